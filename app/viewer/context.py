@@ -1,4 +1,4 @@
-"""The objects that the parts of an open window share; every panel is given all of them."""
+"""The objects that all parts of an open window share, in one `ApplicationContext`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ApplicationContext:
     """The session and its picture, the messages and dialogs, and the commands for files."""
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
-        """surface: that of the window, which is open and still empty."""
+        """surface: the surface of the open window, which is still empty."""
         self.session = session
         self.settings = settings
         self.surface = surface
@@ -40,7 +40,7 @@ class ApplicationContext:
             self.stage = Stage(surface, session.scene, settings.display, self.times)
             self.portraits = Portraits(surface.gl, wake_up)
             stack.callback(self.portraits.close)
-            self.close = stack.pop_all().close  # called with the window's end
+            self.close = stack.pop_all().close  # called when the window closes
         self.view = SceneView(session, settings, surface)
         self.wanted_tab = ""  # title of the panel to bring to the front
         self.question = Question(session)

@@ -15,9 +15,9 @@ Task = Callable[[], Message]  # an action of the user; it may raise UserError or
 
 @dataclass
 class Messages:
-    """One line at a time over the picture; a lasting one stays until the next command.
+    """Shows one line at a time over the picture; a lasting line stays until the next command.
 
-    It names keys as hints do (`Gui.with_keys`): by the labels of commands, in brackets.
+    A line names keys as hints do (`Gui.with_keys`): by the labels of commands, in brackets.
     """
 
     text: str = ""
@@ -30,7 +30,7 @@ class Messages:
         self.text = sentence(as_text(text))
         self.is_error = error
         self.stays = error or stays
-        self.seconds_left = 6.0  # time for which a line stays
+        self.seconds_left = 6.0  # until the line disappears
 
     def attempt(self, task: Task, *, stays: bool = False) -> None:
         """Run a task, and show the message that it returns or the error that it raises."""
@@ -43,14 +43,14 @@ class Messages:
             self.say(line, stays=stays)
 
     def carry_out(self, command: Task) -> None:
-        """The same for a command of the user; it removes the message before it."""
+        """Remove the last message, then run a command of the user like `attempt`."""
         self.text = ""
         self.attempt(command)
 
     def age(self, seconds: float) -> None:
-        """Let time pass since the last frame: a line disappears unless it is lasting."""
+        """Count the seconds since the last frame; a line that is not lasting disappears."""
         if not self.stays:
-            # [s] of a frame that count at most for a message: a longer frame did not show it.
+            # [s] of a frame that count at most, because a longer frame did not display the line.
             longest_frame = 0.25
             self.seconds_left -= min(seconds, longest_frame)
         if self.seconds_left <= 0.0:
@@ -58,5 +58,5 @@ class Messages:
 
     @property
     def is_fading(self) -> bool:
-        """Whether the line disappears by itself."""
+        """Whether the line will disappear after some time."""
         return bool(self.text) and not self.stays

@@ -1,8 +1,8 @@
 """The settings that the window remembers, each with its allowed values.
 
-They are one JSON file in the user's configuration folder, which is replaced as a whole or not at
-all. Each value is checked by itself: the default replaces an unusable value, the others stay, and
-the window names the unusable one in one line.
+They are stored in one JSON file in the user's configuration folder, which is replaced atomically.
+Each value is checked separately: the default replaces an unusable value, other values stay, and
+the window reports unusable values in one line.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from ..scenes import Drawable
 from ..text import in_one_line
 from .interface.gui import THEMES
 
-SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
+SIDES_SHOWN = 200, 16384  # [screen units]: limits of the window's width and height
 COMPARISONS = ("off", "wipe", "side by side")
-SKINS = {  # whether it is textured, and its colour
+SKINS = {  # whether the skin is textured, and its colour
     "textured": (True, render.SKIN),
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
@@ -47,20 +47,20 @@ RENDER_BACKGROUNDS = ("light", "dark", "white", "black")
 BACKGROUNDS = {
     "theme": None,
     **{name: getattr(render, name.upper()) for name in RENDER_BACKGROUNDS},
-    "map": None,  # the light's map; under a lamp the theme's background
+    "map": None,  # the light's map; for a lamp, the theme's background
 }
-# Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
+# Individual typology angles [degrees], see assets/identities/complexion.py; None: of the person.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 FRAMES_KIND = "frames"  # pictures in a folder
 
 
 class Kind(NamedTuple):
-    """One kind of file. suffix: that of its name, "" for a folder. fastest: [frames/s]."""
+    """One kind of export. suffix: suffix of the file, "" for a folder. fastest: [frames/s]."""
 
     title: str
     suffix: str
-    is_drawn: bool = True  # else it is motion
+    is_drawn: bool = True  # whether it has pictures instead of motion
     can_be_transparent: bool = False
     fastest: float = 240.0
 
@@ -82,7 +82,7 @@ def _option(value: Any) -> Any:
 
 
 def _refiners() -> list[str | None]:
-    """The names of all usable refiners that split triangles; None: the look's."""
+    """Return the names of available refiners that split triangles; None: the look's refiner."""
     return [None, *(name for name in refine.refiners.available() if name != STATIC)]
 
 
@@ -94,29 +94,29 @@ Option = Annotated[Any, MadeFrom(Any, _option)]  # value of an option; the refin
 
 @dataclass
 class Display(Record):
-    """Display settings of the scene; their names are those in panels."""
+    """Display settings of the scene, with the names that the panels display."""
 
     look: Annotated[str, OneOf(PRESETS)] = FIRST_PRESET
-    refiner: Annotated[str | None, OneOf(_refiners, "a refiner")] = None  # None: the look's
-    # Options that replace those of the look, by names of refiners.
+    refiner: Annotated[str | None, OneOf(_refiners, "a refiner")] = None  # None: of the look
+    # Options that replace options of the look: name of a refiner -> name of an option -> value.
     options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
     compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the kind of comparison
     beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the unrefined mesh
-    divider: Share = 0.5  # of a wipe, of the picture's width
+    divider: Share = 0.5  # place of a wipe's line, as a share of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
     splits: Flag = False  # colour triangles by their splits
     wires: Flag = False  # outline triangles with more splits than at rest
     skin: Annotated[str, OneOf(SKINS)] = "textured"
-    skin_maps: Flag = True  # fine shape, and less light in folds, from maps over the skin
-    wrinkles: Share = 1.0  # their depth where skin is compressed
+    skin_maps: Flag = True  # fine shape, and less light in folds, from texture maps
+    wrinkles: Share = 1.0  # depth of wrinkles where skin is compressed
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
-    tone: Annotated[str, OneOf(TONES)] = "own"  # of textured skin
-    has_hair: Flag = True  # on the head, with textured skin
+    tone: Annotated[str, OneOf(TONES)] = "own"  # tone of textured skin
+    has_hair: Flag = True  # whether a head with textured skin has hair
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
-    # Opacity of the skin over muscles and skull, and the side of the face that shows them.
+    # Opacity of the skin over muscles and skull, and the side of the face that shows these.
     skin_opacity: Share = OPACITY
     dissect: Annotated[str, OneOf(SIDES)] = "both"
 
@@ -127,31 +127,31 @@ class Display(Record):
         return AnatomyView(structures, self.skin_opacity, self.dissect, self.has_hair)
 
     def as_at_first(self) -> Display:
-        """The default display, with the present scene's settings."""
+        """Return the default display, but keep light, background, tone and hair."""
         of_scene = ("light", "background", "tone", "has_hair")
         return Display(**{name: getattr(self, name) for name in of_scene})
 
     def choose_preset(self, name: str) -> None:
-        """Refine by a look, without changes of it."""
+        """Refine by a look, with its own refiner and options."""
         self.look = name
         self.refiner = None
         self.options = {}
 
     def refiner_on(self, scene: Drawable) -> str:
-        """The name of the chosen refiner for this scene."""
+        """Return the name of the chosen refiner for this scene."""
         return Refinement(self.look, self.refiner).on(scene.name)[0]
 
     def choose_refiner(self, scene: Drawable, name: str) -> None:
-        """Refine by another refiner, or again by the look's."""
+        """Refine by another refiner, or again by the look's refiner."""
         self.refiner = None if name == PRESETS[self.look][scene.name].refiner else name
 
     def preset_as_changed(self, scene: Drawable) -> str:
-        """The look's name, with a mark if the refinement of this scene differs from it."""
+        """Return the look's name, with a mark if the refinement of this scene differs."""
         asked = self.refinement_on(scene)
         return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
 
     def refinement_on(self, scene: Drawable) -> Refinement:
-        """The refinement of this scene."""
+        """Return the refinement of this scene."""
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
 
@@ -192,18 +192,18 @@ class ExportChoices(Record):
 class Settings(Record):
     """All remembered settings."""
 
-    ZOOMS = 0.6, 3.0  # least and most of the size of words
+    ZOOMS = 0.6, 3.0  # least and greatest zoom
 
-    size: Size = None  # of the window [screen units]
+    size: Size = None  # size of the window [screen units]
     theme: Annotated[str, OneOf(THEMES)] = "light"
-    zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
+    zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # scale of words and sliders
     is_linked: Flag = True  # whether sliders of both sides are linked
     is_alive: Flag = True  # whether the face has idle life
-    # In heights of letters; layout.py has the limits of a screen.
+    # [em]; layout.py limits the width to the screen.
     panel_width: Annotated[float, Within(0.0, 1000.0)] = 22.5
-    shows_curves: Flag = False  # of keys, instead of rows
+    shows_curves: Flag = False  # whether the timeline shows curves instead of rows of keys
     folds: dict[str, Flag] = field(default_factory=dict)  # whether a heading is open, by title
-    recent: list[str] = field(default_factory=list)  # files, latest first
+    recent: list[str] = field(default_factory=list)  # paths of files, latest first
     display: Display = field(default_factory=Display)
     export: ExportChoices = field(default_factory=ExportChoices)
 
@@ -213,13 +213,13 @@ class Settings(Record):
         self.recent = [*dict.fromkeys((opened, *self.recent))][:10]
 
     def enlarge(self, factor: float) -> None:
-        """Make words and sliders larger or smaller."""
+        """Multiply the zoom by a factor, within its limits."""
         least, most = self.ZOOMS
         self.zoom = min(max(self.zoom * factor, least), most)
 
 
 def switch(part: object, name: str, value: object = True, other: object = False) -> None:
-    """Set a field of a part to `value`, or to `other` if it has this value already."""
+    """Set a field of an object to `value`, or to `other` if it has this value already."""
     setattr(part, name, other if getattr(part, name) == value else value)
 
 
@@ -231,7 +231,7 @@ def display_of(
     splits: bool,
     **style: Any,
 ) -> Display:
-    """The command line's display of the scene with this name; style: further fields."""
+    """Return the display for options of the command line. scene: its name. style: more fields."""
     display = Display(
         look=refinement.preset,
         splits=splits,
@@ -250,17 +250,17 @@ def display_of(
 
 
 def settings_path() -> Path:
-    """The path of a user's settings."""
+    """Return the path of the user's settings."""
     return configuration_folder() / "viewer.json"
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:
-    """The stored settings, and a line that names the unusable values in the file, "" for none.
+    """Return the stored settings, and a line that names unusable values in the file, or "".
 
     The file is rewritten when the window closes.
     """
     try:
-        longest_file = 2**20  # [bytes] of settings; ours have two thousand
+        longest_file = 2**20  # [bytes]; settings have about two thousand
         stored = parsed_json(read_text(path, what="file of settings", longest=longest_file))
     except NoSuchFileError:
         return Settings(), ""
@@ -281,7 +281,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; raises UserError if this fails."""
     stored = asdict(settings)
-    for table in (stored, stored["display"]):  # default values are left out
+    for table in (stored, stored["display"]):  # None stands for a default, and is left out
         for name in [name for name, value in table.items() if value is None]:
             del table[name]
     save_text(path, json.dumps(stored, indent=1))

@@ -1,1 +1,1 @@
-"""Files that are read and written: scripts, heads, exports, and the dialogs for them."""
+"""Opening and saving of scripts, heads and exports, with the dialogs for their files."""

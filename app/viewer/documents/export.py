@@ -1,6 +1,7 @@
-"""Screenshots, and exports: the files that `risorius capture` and `export` write.
+"""Screenshots, and exports of the files that `risorius capture` and `risorius export` write.
 
-An export runs in its own process, with script and view at its start; the window stays free.
+An export runs in its own process, so that the window stays responsive. It uses the script and the
+view from its start.
 """
 
 from __future__ import annotations
@@ -42,11 +43,11 @@ class ExportJob:
 
     target: Path
     task: Task
-    shown_share: float = 0.0  # the share of the work that the window showed last
+    shown_share: float = 0.0  # share of the finished work that the window displayed last
 
 
 class Exporter:
-    """Screenshots of a stage; films and files of a session, one at a time."""
+    """Writes screenshots of a stage, and exports of a session, one at a time."""
 
     def __init__(self, session: Session, settings: Settings, stage: Stage, view: SceneView) -> None:
         self.session = session
@@ -63,7 +64,7 @@ class Exporter:
 
     @property
     def kind(self) -> Kind:
-        """The kind of file."""
+        """The chosen kind of file."""
         return KINDS[self.choices.kind]
 
     def screenshot(self) -> Message:
@@ -108,12 +109,12 @@ class Exporter:
         check_file(target)
         request = RigRequest(adds_parts=True, progress=False)
         work = partial(make_avatar, head, target, request, _say_nothing)
-        written = 8  # number of shapes that take as long as comparing and writing
+        written = 8  # comparing and writing take as long as this number of shapes
         self.job = ExportJob(target, Task(work, len(ARKIT) + written, wake_up))
         return None
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
-        """Options of `capture` that draw the window's picture, a comparison side by side."""
+        """Return options of `capture` for the window's picture; a comparison is side by side."""
         choices = self.choices
         view = self._view
         display = self._view.display
@@ -137,7 +138,7 @@ class Exporter:
     def start(self, target: Path) -> Message:
         """Check the target, and begin to write a file, or a folder of frames.
 
-        UserError if it cannot be written.
+        UserError if the target cannot be written.
         """
         choices = self.choices
         script = self.session.script
@@ -187,7 +188,7 @@ class Exporter:
 
 
 def _say_nothing(_: str) -> None:
-    """Leave out the lines about a head, which the command prints."""
+    """Discard lines about the head that the command line would print."""
 
 
 Value = TypeVar("Value")
@@ -197,17 +198,17 @@ class ExportDialog:
     """Draws the dialog and the progress of an export, and carries out the user's actions."""
 
     TITLE = "Export"
-    DIALOG_WIDTH = 31.0  # [em] of the dialog
-    BUTTON_WIDTH = 6.5  # [em] of a button
+    DIALOG_WIDTH = 31.0  # [em]
+    BUTTON_WIDTH = 6.5  # [em]
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: SceneView) -> None:
         self._gui = gui
         self._exporter = exporter
         self._files = files
         self._view = view
-        label_width = 7.5  # [em] of words at the left
+        label_width = 7.5  # [em], the column of labels
         self._rows = LabelledRows(gui, label_width / self.DIALOG_WIDTH, {})
-        self._was_focused = False  # in the frame before: whether no list was open over it
+        self._was_focused = False  # whether the dialog had the focus in the last frame
 
     def draw(self) -> Message:
         """Draw the dialog, or the progress of an export."""
@@ -275,7 +276,7 @@ class ExportDialog:
         imgui.same_line()
         is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(self.BUTTON_WIDTH))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
-        # Enter presses the widget that Tab has reached, unless that is a line of text.
+        # After Tab, Enter presses the focused widget; otherwise it begins the export.
         io = imgui.get_io()
         is_enter = imgui.is_key_pressed(imgui.Key.enter)
         is_enter = is_enter and (io.want_text_input or not io.nav_visible)

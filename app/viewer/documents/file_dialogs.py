@@ -16,27 +16,27 @@ from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
 from ..messages import Message
 
-SCRIPT_SUFFIX = ".toml"  # of scripts and poses
+SCRIPT_SUFFIX = ".toml"  # suffix of scripts and poses
 ENTER_KEYS = imgui.Key.enter, imgui.Key.keypad_enter
 
 
 @dataclass
 class FileRequest:
-    """A request for a file, the task for the answer, and the present state of the dialog."""
+    """A request for a file: the task that receives the file, and the state of the dialog."""
 
     title: str
     is_saving: bool
-    suffixes: tuple[str, ...]  # ends of the names of such files
+    suffixes: tuple[str, ...]  # suffixes of the files to list
     then: Callable[[Path], Message]
     folder: Path
-    name: str = ""  # in the line, as text
+    name: str = ""  # text in the input line
     complaint: str = ""
-    warned: Path | None = None  # an existing file that a line has warned of
-    wants_focus: bool = True  # of the line: on opening, and after each invalid answer
+    warned: Path | None = None  # an existing file, after a warning that it would be replaced
+    wants_focus: bool = True  # whether the input line takes the focus in the next frame
     found: list[str] = field(default_factory=list)  # folders, which end in "/", then files
 
     def enter(self, folder: Path) -> None:
-        """Show a folder, if it may be read; without hidden files."""
+        """Show a folder without its hidden files; an unreadable folder gives a complaint."""
         try:
             with os.scandir(folder) as entries:
                 visible = [entry for entry in entries if not entry.name.startswith(".")]
@@ -53,7 +53,7 @@ class FileRequest:
 
     @property
     def target(self) -> Path:
-        """The path in the line."""
+        """The path in the input line."""
         written = self.name.strip().strip("'\"")
         is_written = (name for name in self.found if as_text(name) == written)
         target = self.folder / Path(next(is_written, written)).expanduser()
@@ -62,7 +62,7 @@ class FileRequest:
         return target
 
     def confirmed(self) -> Path | None:
-        """The file in the line, unless it is a folder, is missing, or would be replaced unasked."""
+        """Return the target; None for a folder, a missing file, or an unconfirmed replacement."""
         target = self.target
         if target.is_dir():
             self.enter(target)
@@ -78,7 +78,7 @@ class FileRequest:
 
 
 class FileDialogs:
-    """A dialog for one file at a time: a line to type in, above it the files of a folder."""
+    """A dialog for one file at a time: a list of a folder's files above an input line."""
 
     def __init__(self) -> None:
         self.request: FileRequest | None = None
@@ -86,7 +86,7 @@ class FileDialogs:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether an answer is awaited."""
+        """Whether the dialog is open."""
         return self.request is not None
 
     def ask(
@@ -98,7 +98,7 @@ class FileDialogs:
         proposed: str = "",
         suffixes: tuple[str, ...] = (SCRIPT_SUFFIX,),
     ) -> None:
-        """Open the dialog; a later frame calls `then` with the file, or none does."""
+        """Open the dialog; unless the user cancels, a later frame calls `then` with the file."""
         target = (self._folder or Path.cwd()) / proposed
         folder = target.parent if proposed else target
         self.request = FileRequest(title, saving, suffixes, then, folder)
@@ -134,7 +134,7 @@ class FileDialogs:
 
 
 def _draw_places(gui: Gui, request: FileRequest) -> None:
-    """Draw buttons of useful folders, and the path of the present one."""
+    """Draw buttons for useful folders, and the path of the present folder."""
     places = {"Up": request.folder.parent, "Home": Path.home()}
     if not request.is_saving and SCRIPT_SUFFIX in request.suffixes:
         places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
@@ -155,7 +155,7 @@ def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
     for name in request.found:
         kind = "folder" if name.endswith("/") else "file"
         text = as_text(name)
-        label = text.replace("##", "# #")  # imgui would hide the rest
+        label = text.replace("##", "# #")  # imgui hides the part of a label after ##
         twice = imgui.SelectableFlags_.allow_double_click
         is_clicked, _ = imgui.selectable(f"{label}###{kind} {text}", text == request.name, twice)
         gui.remember(f"{kind} {text.removesuffix('/')}")
@@ -174,7 +174,7 @@ def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
 
 
 def _is_confirmed(gui: Gui, request: FileRequest) -> bool:
-    """Draw the line and the button below it; whether the button or Enter was pressed."""
+    """Draw the input line and its button; return whether the button or Enter was pressed."""
     if request.wants_focus:
         imgui.set_keyboard_focus_here()
         request.wants_focus = False

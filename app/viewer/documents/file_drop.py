@@ -24,15 +24,15 @@ MESH_SUFFIXES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS_SUFFIX = ".json"
 
 
-def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
-    """Files by their kind: mesh, landmarks, sound, or else script (a pose or recording, too).
+def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
+    """Return files by kind: mesh, landmarks, sound or script; a script may be a pose or recording.
 
-    The name decides on the kind; JSON may be a recording, so it is read. UserError for several of
-    one kind.
+    The suffix decides the kind; a JSON file is read, because it may be a recording. UserError for
+    two files of one kind.
     """
     found: dict[str, Path] = {}
     for path in paths:
-        end = Path(path.name.lower().removesuffix(".gz")).suffix  # its reader reports the fault
+        end = Path(path.name.lower().removesuffix(".gz")).suffix  # reading reports a wrong .gz
         kind = "mesh" if end in MESH_SUFFIXES else "sound" if end in SOUND_SUFFIXES else "script"
         if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
@@ -44,7 +44,7 @@ def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
 
 
 class FileDrop:
-    """Opens dropped files; a thread makes a head, which takes seconds."""
+    """Opens dropped files; a head takes seconds to make, so a thread makes it."""
 
     def __init__(
         self,
@@ -53,17 +53,17 @@ class FileDrop:
         show_scene: Callable[[Scene], None],
         read: Callable[[Path, Path | None], Task],
     ) -> None:
-        """show_scene: replaces the present scene by one with another head.
+        """show_scene: replaces the present scene by a scene with another head.
 
-        read: runs in a thread; returns a task that lets the user mark the landmarks of a mesh, or
-        those that a file lacks.
+        read: reads a mesh, and landmarks if a file has some, in a thread; returns a task that opens
+        the marking of the missing landmarks.
         """
         self._files = files
         self._scripts = scripts
         self._show_scene = show_scene
         self._read = read
-        self.making: Future[Task] | None = None  # makes the task that shows a head
-        self._action = ""  # in words
+        self.making: Future[Task] | None = None  # the task that shows a head
+        self._action = ""  # the thread's work, in words
         self._begun = 0.0  # start time [s]
         self._shown_seconds = 0
 
@@ -72,7 +72,7 @@ class FileDrop:
         gone = next((path for path in paths if not Path(path).exists()), None)
         if gone is not None:
             raise UserError(f"{gone}: no such file")
-        found = sorted_out([Path(path) for path in paths])
+        found = files_by_kind([Path(path) for path in paths])
         mesh = found.pop("mesh", None)
         landmarks = found.pop("landmarks", None)
         if mesh is None and landmarks is not None:
@@ -87,7 +87,7 @@ class FileDrop:
         return None
 
     def show_person(self, who: int | str | None) -> None:
-        """Begin to make a head by number or name, to replace this one; None: the built-in one."""
+        """Begin to make the head with this number or name; None for the built-in head."""
 
         def make() -> Task:
             head = None if who is None else called_head(who)
@@ -96,7 +96,7 @@ class FileDrop:
         self._begin(f"Making {'the built-in head' if who is None else head_in_words(who)}", make)
 
     def _begin(self, action: str, make: Callable[[], Task]) -> None:
-        """Make the task that shows a head in a thread; the result of an earlier one is dropped."""
+        """Make the task that shows a head, in a thread; an earlier thread's result is dropped."""
         self._action = action
         self._begun = time.monotonic()
         self._shown_seconds = -1
@@ -113,7 +113,7 @@ class FileDrop:
         return making is not None and (making.done() or seconds > self._shown_seconds)
 
     def poll(self) -> Message:
-        """Show the head if it is ready; until then the message has the elapsed time."""
+        """Show the head if it is ready; otherwise return a message with the elapsed time."""
         making = self.making
         if making is not None and making.done():
             self.making = None
@@ -122,7 +122,7 @@ class FileDrop:
         return f"{self._action} ... {self._shown_seconds} s"
 
     def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
-        """In a thread: make the task that shows a head, or has it marked, and plays its files."""
+        """Make the task that shows a head or opens its marking, and opens the other files."""
         show = None
         remark = ""
         complaint = ""
@@ -130,7 +130,7 @@ class FileDrop:
             scene = build_scene("face", own_head(mesh, landmarks))
             show = partial(self._show_scene, scene)
             remark = f" with {mesh.name}"
-        except UnfinishedError as error:  # the user goes on marking it
+        except UnfinishedError as error:  # its marking opens instead
             complaint = str(error) if isinstance(error, MisfitError) else ""
         except assets.AssetError as error:
             raise UserError(str(error)) from None
@@ -149,10 +149,10 @@ class FileDrop:
         return self._scripts.set_sound(found["sound"]) if "sound" in found else line
 
     def ask_head(self) -> None:
-        """Ask for a mesh; show it with the landmark file beside it, or open its marking."""
+        """Ask for a mesh; show it with the landmark file beside it, or else open its marking."""
 
         def go_on(mesh: Path) -> Message:
-            """Use landmarks with the mesh's name."""
+            """Open the mesh, with a landmark file of the same name if there is one."""
             own = (
                 mesh.with_suffix(end) for end in (LANDMARKS_SUFFIX, f".landmarks{LANDMARKS_SUFFIX}")
             )

@@ -1,6 +1,6 @@
-"""The manual in the window: the pages of docs/ as one document, with its contents and a search.
+"""The manual in the window: the pages of docs/ as one document, with contents and a search.
 
-An installed program includes the pages, so it needs no network. Pictures are left out.
+The pages are installed with the program, so no network is needed. Pictures are left out.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Manual:
     def __init__(self, gui: Gui) -> None:
         self._gui = gui
         self.is_open = False
-        self._wants_focus = False  # of the keyboard, for its keys
+        self._wants_focus = False  # whether the next frame gives it the focus
         self._title = ""
         self._text = ""
         self._pages = ""
@@ -51,7 +51,7 @@ class Manual:
         self._wants_focus = True
 
     def draw(self, area: tuple[float, float, float, float]) -> None:
-        """Draw the text. area: that of the picture, left, top, width, height [window units]."""
+        """Draw the text. area: left, top, width and height of the picture [window units]."""
         self._gui.is_reading = False
         if not self.is_open:
             return
@@ -74,7 +74,7 @@ class Manual:
             rich_md.render_document(self._title, self._text, options=options)
         is_focused = imgui.is_window_focused(imgui.FocusedFlags_.child_windows)
         self._gui.is_reading = is_focused and self.is_open
-        is_writing = imgui.get_io().want_text_input  # a search; Escape first ends that
+        is_writing = imgui.get_io().want_text_input  # Escape ends a search first
         if is_focused and not is_writing and imgui.is_key_pressed(imgui.Key.escape):
             self.is_open = False
         imgui.end()
@@ -87,7 +87,7 @@ class Manual:
 
 
 def _options() -> rich_md.MarkdownOptions:
-    """Options of the text: a second font has characters that the first lacks, such as arrows."""
+    """Return options of the text; a second font has missing characters, such as arrows."""
     rich_md.set_assets_folder(str(Path(imgui_bundle.__file__).parent / "assets"))
     options = rich_md.MarkdownOptions()
     options.font_options.merge_fonts = ["fonts/Inconsolata-Medium.ttf"]
@@ -95,13 +95,13 @@ def _options() -> rich_md.MarkdownOptions:
 
 
 def pages() -> dict[str, str]:
-    """The pages, by their names in docs/, in an order for reading.
+    """Return the texts of the pages by their names in docs/, in reading order.
 
     UserError if they are neither in a checkout nor installed.
     """
     folder = _folder()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.glob("**/*.md"))]
-    is_left_out = ("reference/", "gallery")  # pages for the site, and of pictures only
+    is_left_out = ("reference/", "gallery")  # pages for the site alone, and the page of pictures
     present = [name for name in names if not name.startswith(is_left_out)]
     start = (folder / "index.md").read_text(encoding="utf-8")
     linked = re.findall(r"\]\(([\w/]+\.md)", start)
@@ -121,11 +121,11 @@ def _folder() -> Path:
 
 
 def one_document(texts: Mapping[str, str]) -> str:
-    """Pages one after another, with links from each to all.
+    """Join the pages to one document, in which links between pages become links to headings.
 
     texts: Markdown, by the names of the pages.
     """
-    places: dict[tuple[str, str], str] = {}  # name of a heading, by page and anchor
+    places: dict[tuple[str, str], str] = {}  # name of a heading in the document, by page and anchor
     counts: Counter[str] = Counter()
     for page, text in texts.items():
         for number, heading in enumerate(_headings(text)):
@@ -140,10 +140,10 @@ def one_document(texts: Mapping[str, str]) -> str:
 
 
 def _linked(text: str, page: str, places: Mapping[tuple[str, str], str]) -> str:
-    """A page without pictures, with links to headings of the document."""
+    """Return a page without pictures, with links to headings of the document."""
 
     def link(found: re.Match[str]) -> str:
-        """The link within the document; only its words if it leads out of the document."""
+        """Return the link within the document, or only the words of a link out of it."""
         words = found[1]
         target = found[2]
         if "://" in target:
@@ -158,7 +158,7 @@ def _linked(text: str, page: str, places: Mapping[tuple[str, str], str]) -> str:
 
 
 def _headings(text: str) -> Iterator[str]:
-    """The headings of a page, without similar lines in blocks of code."""
+    """Yield the headings of a page; lines in blocks of code do not count."""
     is_code = False
     for line in text.splitlines():
         if line.lstrip().startswith("```"):
@@ -168,18 +168,18 @@ def _headings(text: str) -> Iterator[str]:
 
 
 def slug_of(heading: str) -> str:
-    """The name of a heading in a document: lower case, a hyphen for each space, no other marks."""
+    """Return a heading's name in the document: lower case, hyphens for spaces, no other marks."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def _anchor(heading: str) -> str:
-    """A heading's name in links of pages: the same in ASCII, with single hyphens."""
+    """Return a heading's name in links between pages: its slug in ASCII, with single hyphens."""
     plain = unicodedata.normalize("NFKD", heading).encode("ascii", "ignore").decode("ascii")
     return re.sub(r"-+", "-", slug_of(plain))
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table in Markdown."""
+    """Return a table in Markdown."""
     titles = tuple(head)
     lines = (titles, ("---",) * len(titles), *rows)
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)

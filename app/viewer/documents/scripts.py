@@ -24,7 +24,7 @@ from .file_dialogs import SCRIPT_SUFFIX, FileDialogs
 
 SOUND_SUFFIXES = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
-    *(".mov", ".mp4", ".mkv", ".webm"),  # films with a sound, such as a phone's
+    *(".mov", ".mp4", ".mkv", ".webm"),  # films with sound, such as a phone's
 )
 
 
@@ -36,7 +36,7 @@ class Unsaved(Protocol):
         """The work that would be lost, in words; "" for nothing."""
 
     def save(self, then: Task) -> Message:
-        """Save it, and continue with `then`."""
+        """Save the work, then run `then`."""
 
 
 class Question:
@@ -45,12 +45,12 @@ class Question:
     def __init__(self, session: Session) -> None:
         self._session = session
         self.task: Task | None = None  # the task that waits for the answer
-        self.verb = ""  # its word, such as "Close"
-        self.other: Unsaved | None = None  # other work in danger, instead of the session's
+        self.verb = ""  # the verb for the task, such as "Close"
+        self.other: Unsaved | None = None  # the unsaved work, unless it is the session's
 
     @property
     def is_open(self) -> bool:
-        """Whether an answer is awaited."""
+        """Whether the question is open."""
         return self.task is not None
 
     @property
@@ -59,7 +59,7 @@ class Question:
         return (self.other or self._session.work).unsaved
 
     def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
-        """Run `task` at once, or after unsaved work was saved or discarded."""
+        """Run `task`; if work is unsaved, first ask whether to save or discard it."""
         self.other = other
         if not self.unsaved:
             return task()
@@ -69,7 +69,7 @@ class Question:
 
 
 class ScriptCommands:
-    """Opens and saves the session's script and pose; opens a dialog if that needs an answer.
+    """Opens and saves the session's script and pose, with dialogs where the user must choose.
 
     A command's `then` is a task to run after saving; it does not run if nothing was saved.
     """
@@ -81,7 +81,7 @@ class ScriptCommands:
         question: Question,
         note_recent: Callable[..., object],
     ) -> None:
-        """note_recent: a call that takes files that were opened together, or saved."""
+        """note_recent: a function for files that were opened together, or for a saved file."""
         self._session = session
         self._files = files
         self._question = question
@@ -103,14 +103,14 @@ class ScriptCommands:
     def ask_open(self) -> None:
         """Ask for a script, a pose or a recording, and show it."""
         title = "Open script, pose or recording"
-        recording_suffixes = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
+        recording_suffixes = (".csv", ".json", ".tsv", ".txt")  # the content decides
         ends = (SCRIPT_SUFFIX, *recording_suffixes)
         self._files.ask(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:
         """Show the script, pose or recording of a file; if work would be lost, ask first.
 
-        remark: is added to the message when the file is opened.
+        remark: text to add to the message about the opened file.
         """
         session = self._session
         limits = session.controls.limits if session.scene.name == "face" else None
@@ -124,11 +124,11 @@ class ScriptCommands:
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
         if is_pose(script) and not self._session.work.has_unsaved_pose:
-            return show()  # all other unsaved work stays
+            return show()  # a pose replaces no other unsaved work
         return self._question.before("Open", show)
 
     def _check(self, script: Script) -> None:
-        """Raise UserError with the reason if a script or pose cannot be opened here."""
+        """Raise UserError with the reason if this window cannot open a script or pose."""
         here = self._session.script.scene
         if script.scene != here:
             raise UserError(
@@ -184,7 +184,7 @@ class ScriptCommands:
         self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
 
     def set_sound(self, path: Path) -> Message:
-        """Add a sound file to the script; raises UserError if it has no sound."""
+        """Add a sound file to the script; raises UserError if the file has no sound."""
         self._session.edit(with_sound(self._session.script, path))
         self.note_recent(path)
         return f"{path.name}: opened; Space plays it with the script"
@@ -218,7 +218,7 @@ def draw_question(
     other = question.other
     if task is None:
         return None
-    again = partial(question.before, verb, task, other)  # there may be more unsaved work
+    again = partial(question.before, verb, task, other)  # asks about further unsaved work
     choices: dict[str, Task] = {}
     if other is not None:
         choices["Save landmarks"] = partial(other.save, again)

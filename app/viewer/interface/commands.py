@@ -20,24 +20,24 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
 class Command:
     """One command: its menu, label and key, its action, and whether it is switched on."""
 
-    menu: str  # "" for none: only keys run it
+    menu: str  # "" for a command that only keys run
     label: str
-    key: str  # "" for none; several with ", " between
+    key: str  # one key, or several separated by ", "; "" for none
     run: Task
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
     submenu: Callable[[], Iterable[Command]] | None = None  # a submenu instead of an action
-    begins_section: bool = False  # of its menu, with a line above it
-    words: str = ""  # by which the search of controls also finds it
+    begins_section: bool = False  # whether a line separates it from the item above
+    words: str = ""  # further words by which the search of controls finds it
 
     @property
     def displayed_keys(self) -> str:
-        """All keys, in a keyboard's words."""
+        """The keys as menus display them, for example = for Equal."""
         return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """All keys that run it."""
+        """All keys that run the command."""
         return tuple(filter(None, self.key.split(", ")))
 
 
@@ -46,9 +46,9 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
     if gui.has_popup:  # the popup gets these keys
         return
     is_writing = imgui.get_io().want_text_input or gui.is_reading
-    # Ctrl keys that a line of text uses itself during typing.
+    # Ctrl keys that edit a line of text while the user types.
     text_keys = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-    # Menus with commands that wait until the mouse button is released.
+    # Menus whose keys are ignored while a mouse button is pressed; "": commands without a menu.
     changing_menus = ("Edit", "Keys", "")
     for command in commands:
         for key in command.keys:
@@ -61,7 +61,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 
 
 def chord(key: str) -> int:
-    """A key in imgui's numbers."""
+    """Return imgui's number of a key with its modifiers."""
     *modifiers, last = key.split("+")
     return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
 
@@ -72,7 +72,7 @@ class MenuBar:
     def __init__(
         self, gui: Gui, messages: Messages, commands: Sequence[Command], unsaved: Callable[[], str]
     ) -> None:
-        """unsaved: the work that would now be lost, in words; "" for none."""
+        """unsaved: returns the unsaved work in words, or ""."""
         self._gui = gui
         self._messages = messages
         self._commands = commands
@@ -95,7 +95,7 @@ class MenuBar:
         return height
 
     def draw_menu(self, title: str) -> None:
-        """Draw the commands of a menu, inside it."""
+        """Draw the commands of an open menu."""
         for command in self._commands:
             if command.menu != title:
                 continue
@@ -115,7 +115,7 @@ class MenuBar:
             self._gui.remember(f"menu {title}: {label}")
             if is_clicked:
                 self._messages.carry_out(command.run)
-        if imgui.is_key_pressed(imgui.Key.escape):  # or the mouse may open a submenu again
+        if imgui.is_key_pressed(imgui.Key.escape):  # the mouse could reopen a submenu
             imgui.close_current_popup()
 
 
@@ -130,9 +130,9 @@ def command_button(
     meaning: str = "",
     is_wanted: bool = False,
 ) -> None:
-    """Draw a button that runs a command; it is lit while the command is on, or wanted.
+    """Draw a button that runs a command; it is lit while the command is on, or `is_wanted`.
 
-    label, meaning: its text and its hint, by default the command's label and keys.
+    label, meaning: text and hint of the button, by default the command's label and keys.
     name, width: see `button`.
     """
     is_on = is_wanted or (command.is_on is not None and command.is_on())

@@ -1,8 +1,8 @@
 """Dear ImGui in the GLFW window: set up, themes, one frame, shut down.
 
-imgui-bundle has its own GLFW and must be imported before `glfw`, so that both use the same library.
-So this module is imported before a window is opened. We chose this binding because its own C++
-backends draw in moderngl's window, without PyOpenGL.
+imgui-bundle contains its own GLFW library. It must be imported before `glfw`, so that both use the
+same library; so this module is imported before a window is opened. We chose this binding because
+its C++ backends draw in moderngl's window, without PyOpenGL.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from risorius import render
 
 from ...text import as_text
 
-import glfw  # isort: skip - after imgui_bundle, see above
+import glfw  # isort: skip - must follow imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
@@ -34,14 +34,14 @@ LEFT = 0
 RIGHT = 1
 MIDDLE = 2
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
-# Flags of a note over the picture: it has the size of its words, and takes no keys.
+# Flags of a note over the picture: it has the size of its text, and takes no keyboard focus.
 NOTE_FLAGS = (
     imgui.WindowFlags_.always_auto_resize
     | imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_focus_on_appearing
 )
 
-_drop_callbacks: list[Any] = []  # GLFW holds no references to these
+_drop_callbacks: list[Any] = []  # keeps references, because GLFW keeps none
 
 
 @dataclass(frozen=True)
@@ -86,23 +86,23 @@ THEMES = {
 
 
 class Gui:
-    """The Dear ImGui context of one window; `places` has the area of each item, for tests."""
+    """The Dear ImGui context of one window; `places` has the area of each item for tests."""
 
-    MOUSE_BUTTON_KEY = -1  # instead of a key: a mouse button was pressed
+    MOUSE_BUTTON_KEY = -1  # stands for a press of a mouse button
 
     def __init__(self, window: Any) -> None:
         self._window = window
         self._title = ""
         self._context = imgui.create_context()
-        self.double_click_time = 0.3  # [s] until the second press
+        self.double_click_time = 0.3  # [s] between two presses at most
         self.has_popup = False  # whether a menu, a list or a dialog was open at the turn's start
-        self.is_reading = False  # whether a text has the keyboard, like a line to type in
-        self._presses: list[tuple[int, int | None]] = []  # number of earlier events, and the key
-        self._looked = time.perf_counter()  # last reading of events [s]
-        self._shown = self._looked - 1.0 / 60.0  # the same for the last frame [s]
-        self._blind = 0.0  # [s] without a reading before: largest age of an event
+        self.is_reading = False  # whether a displayed text has the keyboard focus
+        self._presses: list[tuple[int, int | None]] = []  # queued events before a press, its key
+        self._last_reading = time.perf_counter()  # time of the last reading of events [s]
+        self._last_answered = self._last_reading - 1.0 / 60.0  # reading before the last frame [s]
+        self._largest_age = 0.0  # [s] between the last two readings: largest age of an event
         self.places: dict[str, tuple[float, float, float, float]] = {}
-        self.keys: dict[str, str] = {}  # of commands, by their labels
+        self.keys: dict[str, str] = {}  # keys of commands, by the commands' labels
         self.theme = THEMES["light"]
         self._dressed: object = None
         io = imgui.get_io()
@@ -112,13 +112,13 @@ class Gui:
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
-        glfw.set_key_callback(window, self._note_key)  # ImGui calls it before its own
+        glfw.set_key_callback(window, self._note_key)  # ImGui calls this callback before its own
         glfw.set_mouse_button_callback(window, self._note_button)
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
     def set_theme(self, theme: str, zoom: float) -> None:
-        """Apply a theme; everything is `zoom` times as large, and larger on a dense screen."""
+        """Apply a theme; sizes are scaled by `zoom`, and by the density of the screen."""
         scale = zoom * self._screen_scale()
         if self._dressed == (theme, scale):
             return
@@ -130,9 +130,9 @@ class Gui:
         style.font_scale_main = scale
 
     def _screen_scale(self) -> float:
-        """The scale of a dense screen, where GLFW does not apply it.
+        """Return the scale of a dense screen, or 1 where window units are scaled already.
 
-        On macOS a window unit is two pixels and imgui knows; on Windows and X11 it is one.
+        On macOS a window unit is two pixels, as imgui knows; on Windows and X11 it is one pixel.
         """
         width = max(glfw.get_window_size(self._window)[0], 1)
         pixels_per_unit = glfw.get_framebuffer_size(self._window)[0] / width
@@ -141,7 +141,7 @@ class Gui:
         )
 
     def set_title(self, title: str) -> None:
-        """Set the window's title, if it differs."""
+        """Set the window's title if it has changed."""
         if title != self._title:
             self._title = title
             glfw.set_window_title(self._window, as_text(title))
@@ -162,31 +162,37 @@ class Gui:
         if self.is_minimised:
             glfw.restore_window(self._window)
 
-    def look(self, seconds: float = 0.0) -> bool:
-        """Wait for events of the user, `seconds` at most; return whether there is any."""
-        self._blind = time.perf_counter() - self._looked
+    def read_events(self, seconds: float = 0.0) -> bool:
+        """Wait for input of the user, `seconds` at most; return whether there is any."""
+        self._largest_age = time.perf_counter() - self._last_reading
         glfw.wait_events_timeout(seconds)
-        self._looked = time.perf_counter()
+        self._last_reading = time.perf_counter()
         return bool(self._context.input_events_queue.size() > 0)
 
     def _note_key(self, _: Any, key: int, code: int, action: int, modifiers: int) -> None:
-        """Cut before a press, and before a modifier is let go, which its key must not miss."""
+        """Note the queue's length before a press, and before the release of a modifier.
+
+        `turns` answers these events in separate frames, so a key keeps its modifiers.
+        """
         is_modifier = key in MODIFIERS
         if action == glfw.PRESS or (is_modifier and action == glfw.RELEASE):
             count = self._context.input_events_queue.size()
             self._presses.append((count, None if is_modifier else key))
 
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
-        """Cut before a press: the mouse must be there before. It may be as old as the last."""
+        """Note the queue's length before a press, so that earlier motion is answered first.
+
+        A double click may take longer if the events are old.
+        """
         if action == glfw.PRESS:
             self._presses.append((self._context.input_events_queue.size(), self.MOUSE_BUTTON_KEY))
             io = imgui.get_io()
-            longest = self.double_click_time + self._blind
+            longest = self.double_click_time + self._largest_age
             io.mouse_double_click_time = longest
             io.mouse_single_click_delay = longest + 0.1
 
     def turns(self) -> Iterator[None]:
-        """Turns of the GUI, a `frame` each, until all input of the user is answered."""
+        """Yield once for each `frame` of the GUI that the user's input needs."""
         io = imgui.get_io()
         queue = self._context.input_events_queue
         waiting = type(queue)()
@@ -195,13 +201,13 @@ class Gui:
         queue.clear()
         cuts = [(0, None), *self._presses, (waiting.size(), 0)]
         self._presses = []
-        focus_turns = 3  # turns of the GUI until a newly opened window gets the focus
+        focus_turns = 3  # frames of the GUI until a newly opened window gets the focus
         for (start, pressed), (end, following) in pairwise(cuts):
             for index in range(start, end):
                 queue.push_back(waiting[index])
             while queue.size():
                 yield
-            # A press may open a line to type in; keys that follow wait until it has the focus.
+            # A press may open an input line; later keys wait until it has the focus.
             is_settling = pressed is not None and following not in (None, self.MOUSE_BUTTON_KEY)
             for _ in range(focus_turns * is_settling):
                 if not io.want_text_input:
@@ -220,18 +226,18 @@ class Gui:
 
     @contextlib.contextmanager
     def frame(self, *, is_visible: bool = True) -> Iterator[None]:
-        """Draw all imgui drawings of this block over the present picture.
+        """Draw the imgui items of this block over the picture.
 
-        is_visible: False: input is answered, but nothing is drawn.
+        is_visible: if False, input is answered, but nothing is drawn.
         """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         io = imgui.get_io()
-        # Events count at the time of their reading, not of their answer.
-        io.delta_time = max(self._looked - self._shown, 1e-6)
-        self._shown = self._looked
+        # The time of an event is the time of its reading, not of its answer.
+        io.delta_time = max(self._last_reading - self._last_answered, 1e-6)
+        self._last_answered = self._last_reading
         self.has_popup = self._context.open_popup_stack.size() > 0
-        # Navigation by Tab and arrows, which otherwise have other functions.
+        # In a popup, Tab and arrows move the focus; otherwise they have other functions.
         walks = imgui.ConfigFlags_.nav_enable_keyboard
         io.config_flags = io.config_flags | walks if self.has_popup else io.config_flags & ~walks
         imgui.new_frame()
@@ -244,7 +250,7 @@ class Gui:
                 imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
 
     def with_keys(self, text: str) -> str:
-        """A text with the keys of commands instead of their labels in brackets."""
+        """Replace the labels of commands in brackets by the commands' keys."""
         return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)
 
     def remember(self, name: str) -> None:
@@ -261,7 +267,7 @@ class Gui:
 
 
 def wait_for_event(seconds: float) -> None:
-    """Sleep until input of the user, or this long, in a window without a GUI yet."""
+    """Sleep until input of the user, `seconds` at most, while the window has no GUI yet."""
     glfw.wait_events_timeout(seconds)
 
 
@@ -274,10 +280,10 @@ def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
     """Call `open_files` with the paths of files that are dropped onto the window."""
 
     def call(_: Any, count: int, names: Any) -> None:
-        """Receive a call of GLFW; its own wrapper only accepts names in UTF-8."""
+        """Receive a call of GLFW; glfw's own wrapper only accepts names in UTF-8."""
         open_files([os.fsdecode(names[number]) for number in range(count)])
 
-    library: Any = glfw  # its stubs lack functions that its wrapper calls
+    library: Any = glfw  # its type stubs lack these functions
     callback = library._GLFWdropfun(call)
     _drop_callbacks.append(callback)
     library._glfw.glfwSetDropCallback(window, callback)
@@ -287,13 +293,13 @@ def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
 def fixed_panel(
     name: str, place: tuple[float, float], size: tuple[float, float], *, resizes: bool = False
 ) -> Iterator[None]:
-    """A panel at a fixed place; its edges may be dragged if it resizes."""
+    """Draw the block in a panel at a fixed place; with `resizes` its edges can be dragged."""
     imgui.set_next_window_pos(place)
     imgui.set_next_window_size((max(size[0], 1.0), max(size[1], 1.0)))
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse
     flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_scrollbar if resizes else imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_background  # the surface is already filled with it
+    flags |= imgui.WindowFlags_.no_background  # the surface has this colour already
     imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
     try:
         yield
@@ -302,24 +308,24 @@ def fixed_panel(
 
 
 def em(count: float = 1.0) -> float:
-    """The height of this many letters [window units], the unit of all widths."""
-    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # like imgui in a frame
+    """Return the height of `count` letters [window units], the unit of all sizes in [em]."""
+    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # rounded as by imgui
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
-    """A colour in imgui's form."""
+    """Return a colour as a vector of imgui."""
     return imgui.ImVec4(*rgb, opacity)
 
 
 def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    """A colour in the form of imgui's lines."""
+    """Return a colour as a number, for imgui's draw lists."""
     return int(imgui.get_color_u32(colour(rgb, opacity)))
 
 
 def _set_colours(style: Any, theme: Theme) -> None:
     """Set calm colours for the panels, because the user looks at the face."""
     fresh = imgui.Style()
-    for name in dir(fresh):  # reset every size, or scaling would add up
+    for name in dir(fresh):  # reset every size: scaling multiplies the present sizes
         size = getattr(fresh, name)
         if isinstance(size, (float, imgui.ImVec2)) and not name.startswith("font"):
             setattr(style, name, size)
@@ -343,7 +349,7 @@ def _set_colours(style: Any, theme: Theme) -> None:
             style.set_color_(index, colour(value))
     for index in (which.button_hovered, which.button_active, which.slider_grab_active):
         style.set_color_(index, colour(theme.accent, 0.55))
-    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number is drawn over it
+    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # the number is drawn over it
     for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
-        style.set_color_(index, colour(theme.panel, 0.0))  # an edge also shows it
+        style.set_color_(index, colour(theme.panel, 0.0))  # the edge shows it, too
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

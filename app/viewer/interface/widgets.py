@@ -12,7 +12,7 @@ from ...control_names import readable, sentence
 from ...text import as_text
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
-# Knob and number of imgui's own sliders; bars have others.
+# Colours of the knob and number of imgui's sliders; bars replace both.
 HIDDEN_COLOURS = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
 
 
@@ -21,9 +21,9 @@ class SliderState(NamedTuple):
 
     value: float
     is_changed: bool
-    is_done: bool  # released or typed: a change is complete
+    is_done: bool  # whether a change is complete: released or typed
     is_hovered: bool
-    is_right_clicked: bool = False  # if the slider leaves this to its caller
+    is_right_clicked: bool = False  # only if the slider has a menu
 
 
 def slider(
@@ -40,7 +40,7 @@ def slider(
 ) -> SliderState:
     """Draw the slider `name`; a double or Ctrl click types a number, a right click resets.
 
-    mark: the text at its beginning. has_menu: whether a right click is only reported.
+    mark: text at the left end. has_menu: a right click does not reset, but opens the caller's menu.
     """
     io = imgui.get_io()
     label = f"##{name}"
@@ -51,7 +51,7 @@ def slider(
     imgui.push_style_var(imgui.StyleVar_.grab_min_size, 1.0)
     for index in hidden:
         imgui.push_style_color(index, 0)
-    io.key_ctrl = has_ctrl or imgui.is_mouse_double_clicked(LEFT)  # imgui types by Ctrl alone
+    io.key_ctrl = has_ctrl or imgui.is_mouse_double_clicked(LEFT)  # imgui needs Ctrl for typing
     flags = imgui.SliderFlags_.always_clamp
     is_changed, now = imgui.slider_float(label, value, *limits, f"%.{digits}f", flags)
     io.key_ctrl = has_ctrl
@@ -99,11 +99,11 @@ OPEN_HEADINGS = frozenset({"Expressions", "Wave", "Refinement", "Style", "Anatom
 def heading(
     gui: Gui, folds: dict[str, bool], title: str, label: str = "", *, must_open: bool = False
 ) -> bool:
-    """Draw a heading, which keeps its fold; return whether it is open.
+    """Draw a heading that the user can fold; return whether it is open.
 
-    folds: whether a heading is open, by title, if a user has opened or folded it.
-    label: its text, if different from the title. must_open: opens it for now, for example in a
-        search.
+    folds: title -> whether the heading is open, for headings that a user has opened or folded.
+    label: displayed text, by default the title. must_open: opens the heading for now, for example
+        during a search.
     """
     was_open = must_open or folds.get(title, title in OPEN_HEADINGS)
     imgui.set_next_item_open(was_open)
@@ -127,7 +127,7 @@ def button(
 
     name: the name for its stored place, by default its label. width: [window units], 0 for the
     label's width. meaning: a hint, see `Gui.with_keys`.
-    highlight: its colour while it is on.
+    highlight: the button's colour, None for the usual colour.
     """
     if highlight is not None:
         imgui.push_style_color(imgui.Col_.button, highlight)
@@ -141,7 +141,7 @@ def button(
 
 @contextlib.contextmanager
 def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool]:
-    """A dialog in the middle of the window for this block to draw into, if it is open.
+    """Begin a dialog in the middle of the window; yield whether it is open for the block.
 
     The block ends it by `imgui.close_current_popup`. width, height: [em], 0 for the content's size.
     """
@@ -163,7 +163,7 @@ def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool
 
 
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
-    """Draw a list with imgui's present width; return the choice of this frame."""
+    """Draw a list with imgui's present width; return a choice made in this frame, or None."""
     chosen = None
     flags = imgui.ComboFlags_.height_largest
     is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
@@ -178,7 +178,7 @@ def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | 
 
 
 class LabelledRows:
-    """Rows of a panel: a column of labels with hints, each with a list, a slider or the like."""
+    """Draws rows of a panel: a label with a hint, then a list, a slider or another widget."""
 
     def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
         """share: part of the panel's width for labels. hints: label -> hint."""
@@ -200,11 +200,11 @@ class LabelledRows:
         imgui.set_next_item_width(-1.0)
 
     def end(self, label: str) -> None:
-        """Give the last item the hint of its label."""
+        """Show the hint of a label while the mouse is on the last item."""
         hint(self._gui.with_keys(self.hints.get(label, "")))
 
     def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
-        """Draw a row with a list; return the choice of this frame."""
+        """Draw a row with a list; return a choice made in this frame, or None."""
         self.begin(label)
         return choose(self._gui, label, present, choices)
 
@@ -225,7 +225,7 @@ class LabelledRows:
 
 
 def button_width(label: str) -> float:
-    """The width of a button with this label [window units]."""
+    """Return the width of a button with this label [window units]."""
     return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
 
 
@@ -245,7 +245,7 @@ def muted(gui: Gui, text: str) -> None:
 
 
 def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
-    """The text, or the part of its beginning (or end) that fits into the room [window units]."""
+    """Shorten a text to a width [window units]; keep its beginning, or with `keeps_end` its end."""
     cut = text = as_text(text)
     for lost in range(1, len(text) + 1):
         if imgui.calc_text_size(cut).x <= room:
@@ -255,7 +255,7 @@ def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
 
 
 def stay_in_line(width: float) -> None:
-    """Continue beside the last item, if the next one has room there."""
+    """Draw the next item beside the last one if its width fits there."""
     spacing = imgui.get_style().item_spacing.x
     right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
     if imgui.get_item_rect_max().x + spacing + width <= right:

@@ -1,9 +1,9 @@
 """Marking the 68 landmarks of a mesh by the mouse.
 
-marking.py  the mesh, where its landmarks are so far, undo, files; knows no windows
-picture.py  the mesh as it is seen, and the mouse on it
-panel.py    the task beside it, and the marks over it
-mode.py     all of them in the window, with its commands
+marking.py  the mesh, its present landmarks, undo, files; independent of windows
+picture.py  the picture of the mesh, and the mouse in it
+panel.py    the panel beside the picture, and the marks over it
+mode.py     these parts joined in the window, with the mode's commands
 """
 
 from .marking import Marking

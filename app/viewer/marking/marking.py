@@ -1,7 +1,7 @@
 """A mesh during the marking of its landmarks: present places, undo, its file.
 
-This module is independent of windows. Places are in the mesh's own coordinates; `placing` takes
-them to the space of the picture, which is upright and in millimetres as soon as all marks exist.
+This module is independent of windows. Places are in the mesh's own coordinates; `placing`
+transforms them to the picture's space, which is upright and in millimetres once all marks exist.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ Colour = tuple[float, float, float]  # sRGB
 
 @dataclass(frozen=True)
 class Group:
-    """Landmarks that follow each other.
+    """A group of landmarks that are marked one after another.
 
-    lines: numbers of landmarks that a line joins.
+    lines: for each drawn line, the numbers of its landmarks.
     """
 
     title: str
@@ -74,18 +74,18 @@ ORDER = tuple(GROUP_OF)
 
 @dataclass(frozen=True)
 class Marks:
-    """Places of landmarks, as far as they exist; `guessed` has those that nobody moved."""
+    """Places of the landmarks that exist; `guessed` has the numbers that no user has placed."""
 
     places: Mapping[int, Place]
     guessed: frozenset[int] = frozenset()
 
     def placed(self, number: int, place: npt.ArrayLike) -> Marks:
-        """These marks with one more, placed by hand."""
+        """Return these marks with one more that is placed by hand."""
         x, y, z = np.asarray(place, np.float64).tolist()
         return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
 
     def with_guessed(self, found: Floats64) -> Marks:
-        """These marks with guessed places, shape (68, 3), except for those placed by hand."""
+        """Return marks at guessed places, shape (68, 3), except for marks placed by hand."""
         guessed = {n: (x, y, z) for n, (x, y, z) in enumerate(found.tolist())}
         return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
 
@@ -96,22 +96,22 @@ class Marks:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all 68 exist."""
+        """Whether all 68 landmarks exist."""
         return len(self.places) == LANDMARK_COUNT
 
     @property
     def asked(self) -> int | None:
-        """The point that must be marked next; None if the rest can be guessed."""
+        """The landmark that must be marked next; None if the rest can be guessed."""
         return next((number for number in FIRST if number not in self.places), None)
 
 
 class Marking:
-    """Marks on one mesh. `current` is the requested or chosen landmark."""
+    """The marks on one mesh. `current` is the landmark that is requested or chosen."""
 
     LANDMARKS_SUFFIX = ".json"
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
-        """Read a mesh; raises UserError if it cannot be a head with any marks."""
+        """Read a mesh; raises UserError if the file has no usable mesh."""
         self.path = path
         self._files = files
         with _for_users():
@@ -121,8 +121,8 @@ class Marking:
         self.file: Path | None = None  # file of the marks
         self.marks = self._saved = Marks({})
         self.current = FIRST[0]
-        self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # in its present place
-        radius = 140.0  # [mm] of the mesh, while the head's size in it is unknown
+        self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # in the picture's space
+        radius = 140.0  # [mm] of the displayed mesh, until marks show the head's size
         self._place(centred(mesh.vertices, radius))
         self._upright: Similarity | None = None
         self.history = History((self.marks, self.placing))
@@ -135,29 +135,29 @@ class Marking:
         seen.place(placing.points(self.mesh.vertices))
         self._normals = vertex_normals(seen.positions, seen.faces)
         off = seen.positions - seen.positions.mean(axis=0)
-        if float((self._normals * off).sum()) < 0.0:  # all of it faces inward
+        if float((self._normals * off).sum()) < 0.0:  # the triangles face inward
             seen.faces = np.ascontiguousarray(seen.faces[:, ::-1])
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
 
     @property
     def positions(self) -> Floats64:
-        """The visible places of vertices, shape (V, 3)."""
+        """Vertices in the picture's space, shape (V, 3)."""
         return self.seen_mesh.positions
 
     def turn(self, rotation: Floats64) -> None:
-        """Turn the mesh by a matrix (3, 3), while the marks do not show the upward direction."""
+        """Turn the mesh by a matrix (3, 3), before the marks show the upward direction."""
         now = self.placing
         self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
         self._note()
 
     @property
     def is_upright(self) -> bool:
-        """Whether the marks have shown the upward direction, and the mesh is upright."""
+        """Whether the marks have turned the mesh upright."""
         return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
-        """Turn the mesh upright and scale it to a head, once; AssetError for marks of no face."""
+        """Turn the mesh upright at a head's size, once; AssetError if the marks fit no face."""
         upright = placing(known)
         if not self.is_upright:
             self._upright = upright
@@ -165,15 +165,15 @@ class Marking:
             self.current = ORDER[0]
 
     def seen(self, numbers: Iterable[int]) -> tuple[Floats64, Floats64]:
-        """Where marks are seen, shape (n, 3), and normals of the skin around, shape (n, k, 3)."""
+        """Return marks in the picture's space, (n, 3), and normals of the skin there, (n, k, 3)."""
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        # Several vertices: the nearest one may be behind a lid's edge and face sideways.
+        # Take several vertices, because the nearest one may face sideways behind a lid's edge.
         neighbour_count = 4
         nearest = range(1, min(neighbour_count, len(self.positions)) + 1)
         normals = self._normals[self._nearest.query(points, nearest)[1]]
-        if self.is_upright:  # skin between lips that touch looks up or down, and is seen from ahead
+        if self.is_upright:  # inner lips face up or down, but are visible from ahead
             normals[[number in INNER_LIPS for number in chosen]] = (0.0, 0.0, 1.0)
         return points, normals
 
@@ -196,7 +196,7 @@ class Marking:
         self.undo(0)
 
     def guess(self) -> Message:
-        """Place all marks that were not placed by hand; raises UserError for marks of no face."""
+        """Guess all marks that no user placed; raises UserError if the placed marks fit no face."""
         with _for_users(cure="; drag points, or undo"):
             found = guess(self.mesh, self.marks.by_hand)
         self._stand_up(self.marks.by_hand)
@@ -224,7 +224,7 @@ class Marking:
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
-        """Continue with the marks of a file; raises UserError if it has none for this mesh."""
+        """Continue with the marks of a file; raises UserError if it has no marks for this mesh."""
         with _for_users():
             places, guessed = read_marks(path, self.mesh)
         marks = Marks({})
@@ -263,7 +263,7 @@ class Marking:
 
 @contextlib.contextmanager
 def _for_users(subject: str = "", cure: str = "") -> Iterator[None]:
-    """Report faults of a mesh or of marks as a UserError: users can correct them."""
+    """Turn an AssetError of the block into a UserError, because users can correct its cause."""
     try:
         yield
     except AssetError as error:

@@ -1,4 +1,4 @@
-"""The marking of a mesh instead of the face: its picture, panel, mouse and commands."""
+"""The mode that marks a mesh in place of the face: its picture, panel, mouse and commands."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .picture import MarkingMouse, MarkingView
 class MarkingMode:
     """The marking of a mesh in the window; see `Mode` of the window."""
 
-    draws_over_picture = True  # the marks
+    draws_over_picture = True  # the panel draws marks there
     is_at_rest = True
     is_left_alone = False
     has_news = False
@@ -37,7 +37,7 @@ class MarkingMode:
         open_files: Callable[[Sequence[str]], Message],
         leave: Callable[[], None],
     ) -> None:
-        """others: the window's own commands. leave: returns to the face."""
+        """others: the face's commands; some belong to both modes. leave: returns to the face."""
         self.marking = marking
         self._question = app.question
         self._open_files = open_files
@@ -69,7 +69,7 @@ class MarkingMode:
         return self.marking.unsaved
 
     def paint(self, elapsed: float) -> bool:
-        """Draw the mesh if it has changed; from the front if it has been turned."""
+        """Draw the mesh if it has changed; after a turn, show it from the front."""
         if self.marking.placing is not self._placing:
             self._placing = self.marking.placing
             self.view.fit_scene()
@@ -83,7 +83,7 @@ class MarkingMode:
         """Do nothing: no sound plays during the marking."""
 
     def drop(self, paths: Sequence[str]) -> Message:
-        """Open landmarks of a file; for other files, leave first."""
+        """Open landmarks of a file; for other files, leave the marking first."""
         if [Path(path).suffix for path in paths] == [LANDMARKS_SUFFIX]:
             return self.marking.open(Path(paths[0]))
         return self.leave(partial(self._open_files, paths))
@@ -106,7 +106,7 @@ class MarkingMode:
         return self._question.before("Leave", go, other=self.marking)
 
     def _step(self, direction: int) -> None:
-        """Go to another landmark; if its side is hidden, the camera turns there."""
+        """Go to another landmark; if it is hidden, turn the camera to its side."""
         self.marking.go(direction)
         number = self.marking.current
         camera = self.view.camera
@@ -117,10 +117,10 @@ class MarkingMode:
             camera.pitch = 0.0
 
     def _turn(self) -> None:
-        """Make the visible side the front; if it is already, turn it by a right angle."""
+        """Make the visible side the front; if it is the front already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
         turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
-        # Turn of the picture about the line of sight.
+        # A right angle about the line of sight.
         quarter_turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         self.marking.turn(quarter_turn if np.array_equal(turn, np.eye(3)) else turn)
 

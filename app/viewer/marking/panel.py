@@ -1,4 +1,4 @@
-"""The panel of the marking: the task, the guide, buttons; and the marks over the mesh."""
+"""The panel of the marking, with task, guide and buttons, and the marks over the mesh."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class MarkingPanel:
         menus: MenuBar,
         commands: Iterable[Command],
     ) -> None:
-        """commands: those that get buttons."""
+        """commands: the commands that get buttons."""
         self._gui = gui
         self._messages = messages
         self._marking = marking
@@ -108,7 +108,7 @@ class MarkingPanel:
         imgui.spacing()
 
     def _draw_guide(self) -> None:
-        """Draw the current point among those of a face, its group as large as possible."""
+        """Draw the current point in a diagram of all points; at last, of its group alone."""
         current = self._marking.current
         is_complete = self._marking.marks.is_complete
         low = imgui.get_cursor_screen_pos()

@@ -24,7 +24,7 @@ Spot = tuple[float, float]  # [window units]
 
 
 class MarkingView(SceneView):
-    """The view of the mesh: clay, and a camera that frames all of it."""
+    """The view of the mesh, in clay; the camera frames all of it."""
 
     def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
         self._marking = marking
@@ -35,7 +35,7 @@ class MarkingView(SceneView):
     def fit_scene(self) -> None:
         marking = self._marking
         self.camera = render.OrbitCamera.framing(marking.positions)
-        if marking.is_upright:  # all of the face, whatever the size of hair and shoulders
+        if marking.is_upright:  # frame the face alone, without hair and shoulders
             self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
 
     @property
@@ -62,14 +62,14 @@ class MarkingView(SceneView):
 def places_in(
     area: tuple[float, float, float, float], camera: render.OrbitCamera, points: npt.ArrayLike
 ) -> list[Spot]:
-    """Places of points (n, 3) for a camera that fills an area of the window [window units]."""
+    """Project points (n, 3) by a camera whose picture fills an area of the window [units]."""
     left, top, width, height = area
     seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))
     return [(left + x, top + y) for x, y in seen.tolist()]
 
 
 class MarkingMouse(CameraMouse):
-    """A click places the current mark, a drag moves one, or turns the camera."""
+    """A click places the current mark; a drag moves a mark, or turns the camera."""
 
     def __init__(
         self, view: MarkingView, stage: Stage, marking: Marking, messages: Messages
@@ -121,11 +121,11 @@ class MarkingMouse(CameraMouse):
         return is_seen
 
     def _mark_under(self, io: Any) -> int | None:
-        # Of marks in one place, such as those of touching lips, the current one is taken.
+        # Of several marks in one place, for example on touching lips, take the current one.
         off = {
             number: math.dist(spot, io.mouse_pos) - em(0.3) * (number == self._marking.current)
             for number, spot in self._seen.places().items()
         }
         nearest = min(off, key=lambda number: off[number], default=0)
-        mark_reach = 0.8  # [em] around a mark in which the mouse grabs it
+        mark_reach = 0.8  # [em] from a mark within which the mouse grabs it
         return nearest if off.get(nearest, math.inf) < em(mark_reach) else None

@@ -56,7 +56,7 @@ class DisplayRows(LabelledRows):
     def put(
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], Message]
     ) -> None:
-        """Draw a row with a list; `put` gets the choice."""
+        """Draw a row with a list, and call `put` with the user's choice."""
         chosen = self.choose(label, present, choices)
         if chosen is not None:
             self._messages.carry_out(partial(put, chosen))

@@ -1,6 +1,6 @@
-"""The controls of the face: a group for each layer and region, in it rows of bars.
+"""The controls of the face: a group of rows for each layer and region.
 
-A row is one control, or one for each side: its name, and a bar for each.
+A row has the name of one control, or of one control for each side, and a bar for each control.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from ..timeline.keys import KeySelection, listed, movers_of
 
 @dataclass(frozen=True)
 class Row:
-    """One line: the shared name of its controls, and the controls with bars.
+    """One row: the shared name of its controls, and the controls with bars.
 
-    names: a control for both sides comes first, then the subject's right, then the left. sides: two
-    controls that can be linked, or (); with is_linked the left one's bar moves both.
+    names: the controls with bars: first for both sides, then for the subject's right, then left.
+    sides: two controls that can be linked, or (); with is_linked, the bar of the left moves both.
     """
 
     label: str
@@ -52,9 +52,9 @@ class Row:
         values: Mapping[str, float],
         linked: bool,
     ) -> Row:
-        """A row for both sides, with one bar if they are linked and agree.
+        """Return a row for both sides, with one bar if they are linked and equal.
 
-        whole: the control for both sides, or ""; it also has a bar if it is in use.
+        whole: the control for both sides, or ""; has a bar if no side has one, or if it is not 0.
         """
         is_linked = linked and values[sides[0]] == values[sides[1]]
         apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
@@ -63,10 +63,10 @@ class Row:
 
 
 def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
-    """The rows of a group.
+    """Return the rows of a group.
 
-    linked: whether both sides share a bar as long as they agree. A control for both sides (AU12 for
-    AU12_left and AU12_right) replaces them, unless one of them is in use.
+    linked: whether both sides share a bar while they are equal. While they are 0, a control for
+    both sides (AU12 for AU12_left and AU12_right) has the bar instead.
     """
     known = set(names)
     rows = []
@@ -75,7 +75,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         twin = twin_of(name)
         if not side:
             sides = (f"{name}_right", f"{name}_left")
-            if parted(twin)[0] == name != twin:  # one-sided, such as a wink
+            if parted(twin)[0] == name != twin:  # a control for one side, such as a wink
                 rows.append(Row(name, (twin, name)))
             elif not known.issuperset(sides):
                 rows.append(Row(name, (name,)))
@@ -84,7 +84,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         elif base in OPPOSITE or twin not in known:
             rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
-            whole = base if values.get(base) else ""  # in no group; set by a script
+            whole = base if values.get(base) else ""  # a control in no group that a script has set
             rows.append(Row.of_sides(base, (twin, name), whole, values, linked))
     return rows
 
@@ -92,7 +92,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
 def search_rows(
     rows: Iterable[Row], query: str, *, group: str, actions: Mapping[str, str]
 ) -> list[Row]:
-    """The rows in which all words of the query occur.
+    """Return the rows in which all words of the query occur.
 
     Words are searched in names, groups, actions of controls, and synonyms.
     """
@@ -121,7 +121,7 @@ class ControlRows:
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
     def of(self, names: tuple[str, ...]) -> list[Row]:
-        """The present rows of these controls, or those at the beginning of a drag."""
+        """Return the rows of these controls; during a drag, the rows from its beginning."""
         if names not in self._rows or not imgui.is_any_item_active():
             current = self._session.current
             linked = self._settings.is_linked
@@ -131,7 +131,7 @@ class ControlRows:
     def draw(self, row: Row, *, number: int = 0, is_marked: bool = False) -> None:
         """Draw one row; the name of an expression is also a button.
 
-        number: that of the key that shows it, 0 for none. is_marked: whether it was requested.
+        number: the number key that shows the expression, or 0. is_marked: highlights the row.
         """
         session = self._session
         names = row.names
@@ -143,7 +143,7 @@ class ControlRows:
         label_room = room if is_narrow else min(0.5 * room, em(15.0))
         is_lit = is_marked or any(current[name] for name in names)
         pointed = names if self._draw_label(row, label_room, number, is_lit=is_lit) else ()
-        if is_narrow:  # nearer to its own name than to the next one
+        if is_narrow:  # draws bars nearer to their own name than to the next
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - spacing.y)
         else:
             imgui.same_line(left + label_room)
@@ -244,7 +244,7 @@ class FacePanel:
     def __init__(
         self, app: ApplicationContext, selection: KeySelection, commands: Sequence[Command]
     ) -> None:
-        """selection: of keys, which the menus of bars change. commands: that a search finds."""
+        """selection: the selected keys. commands: the commands that a search can find."""
         self._gui = app.gui
         self._session = app.session
         self._settings = app.settings
@@ -259,7 +259,7 @@ class FacePanel:
         """Open the group of a control, scroll to it and mark it."""
         self.search = ""
         self._selected = name
-        self._flash = 90  # frames of the slider's mark
+        self._flash = 90  # number of frames that highlight the row
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
@@ -274,7 +274,7 @@ class FacePanel:
         self._flash = max(self._flash - 1, 0)
 
     def _draw_commands(self) -> bool:
-        """Draw buttons of searched commands; return whether there are any."""
+        """Draw a button for each command that the search finds; return whether there are any."""
         least_length = 3  # letters: fewer occur in too many words
         if len(self.search) < least_length:
             return False
@@ -306,7 +306,7 @@ class FacePanel:
         gui.remember("search")
 
     def _draw_group(self, title: str, names: Sequence[str]) -> int:
-        """Draw a group under its heading; return the number of its rows in the search."""
+        """Draw a group under its heading; return how many rows the search finds."""
         session = self._session
         folds = self._settings.folds
         current = self._session.current

@@ -1,4 +1,4 @@
-"""The layout: menus above, controls at the left, time below, the picture in the rest.
+"""The layout: menus above, controls at the left, the timeline below, the picture in the rest.
 
 A message stands in a line at the upper edge of the picture.
 """
@@ -22,7 +22,7 @@ def draw_message(gui: Gui, messages: Messages, view: SceneView) -> None:
     if not messages.text:
         return
     left, top, width, _ = view.area
-    imgui.set_next_window_pos((left + em(0.8), top + em(0.8)))  # captions are at the foot
+    imgui.set_next_window_pos((left + em(0.8), top + em(0.8)))  # captions are at the lower edge
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
     imgui.begin("##message", None, NOTE_FLAGS)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
@@ -51,7 +51,7 @@ class Layout:
         tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
-        """tabs: calls that draw the panels at the left, by title or label###title."""
+        """tabs: functions that draw the panels at the left, by title or label###title."""
         self._app = app
         self._gui = app.gui
         self._settings = app.settings

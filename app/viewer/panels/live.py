@@ -33,7 +33,7 @@ class LivePanel:
     """Draws the panel, and carries out the user's actions in it."""
 
     def __init__(self, app: ApplicationContext, commands: Mapping[str, Command]) -> None:
-        """commands: by their labels."""
+        """commands: the window's commands, by their labels."""
         self._gui = app.gui
         self._messages = app.messages
         self._live = app.live
@@ -49,7 +49,7 @@ class LivePanel:
         self._draw_listening()
         label = "Stop listening" if live.is_on else "Listen"
         command_button(gui, messages, self._commands["Listen"], label, name="listen", width=-1.0)
-        face = live.face  # the button may have begun or ended it
+        face = live.face  # the button may have changed it
         imgui.push_text_wrap_pos(0.0)
         is_received = face is not None and face.state is State.RECEIVING
         ink = gui.theme.accent if is_received else gui.theme.text
@@ -114,7 +114,7 @@ class LivePanel:
 
 
 def state_in_words(face: LiveFace | None) -> str:
-    """The state of the sender in words."""
+    """Describe the state of the sender."""
     if face is None:
         return "not listening"
     who = f" {face.subject}" if face.subject else ""
@@ -133,7 +133,7 @@ def state_in_words(face: LiveFace | None) -> str:
 
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:
-    """The user's next step while no face is received; else the number of unusable packets."""
+    """Return the user's next step while no face is received, or the number of unusable packets."""
     if face.state is not State.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"

@@ -23,7 +23,7 @@ from ..session.physics import PHASES
 from ..settings import COMPARISONS, SKINS, Display
 from .display_rows import DisplayRows
 
-# Hints for the mouse on a label, or on its item.
+# Hints that appear while the mouse is on a label or its item.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
     "Look": "smooth: the best picture; paper: the paper's own rule ([Paper's look]). A look sets "
@@ -43,11 +43,11 @@ HINTS = {
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
-NUMBERS = ("integer", "number")  # kinds of options that are sliders
+NUMBERS = ("integer", "number")  # kinds of options that are numbers
 
 
 class MechanismPanel:
-    """The panel for the way from mesh to picture."""
+    """The panel with the settings for the steps from mesh to picture."""
 
     def __init__(self, app: ApplicationContext) -> None:
         self._gui = app.gui
@@ -82,7 +82,7 @@ class MechanismPanel:
         imgui.end_child()
 
     def _draw_reset(self) -> None:
-        """Draw a button that resets all; right after a reset, it undoes the reset."""
+        """Draw a button that resets all; directly after a reset, the button undoes it."""
         at_first = self._display.as_at_first()
         is_first = self._display == at_first
         if not is_first:
@@ -118,7 +118,7 @@ class MechanismPanel:
             muted(self._gui, f"({count / base:.2f} x)")
 
     def _draw_advanced(self) -> None:
-        """Rows for settings that a look sets well: the refiner, its words and switches."""
+        """Draw rows for the refiner and its options that are not numbers; looks set these well."""
         scene = self._stage.scene
         names = [name for name in refine.refiners.available() if name != STATIC]
         put = partial(self._display.choose_refiner, scene)
@@ -161,7 +161,7 @@ class MechanismPanel:
             if is_changed and option.allows(chosen):
                 put(chosen)
         elif option.kind == "number":
-            limits = option.least or 0.0, 2.0 * float(default) or 1.0  # the look's is in the middle
+            limits = option.least or 0.0, 2.0 * float(default) or 1.0  # the look's is the middle
             digits = max(3, 1 - math.floor(math.log10(limits[1])))
             slid = self._rows.slide(label, name, float(value), limits, default, digits=digits)
             if slid != value:
@@ -211,7 +211,7 @@ class MechanismPanel:
             self._rows.pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:
-        """The medians of each phase of the paper's Figure 1, and of whole frames."""
+        """Draw the median times of each phase of the paper's Figure 1, and of whole frames."""
         times = self._times
         steps = [each for each in times.steps if each]
         phases = {readable(name): times.median(name) for name in PHASES}
@@ -230,7 +230,7 @@ class MechanismPanel:
 
 
 def choices_of(option: str) -> tuple[str, ...]:
-    """The words for an option of a refiner, including those of looks and of other packages."""
+    """Return the allowed words of a refiner's option, including words of looks and plug-ins."""
     registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
     if option not in registered:
         return ()
@@ -240,7 +240,7 @@ def choices_of(option: str) -> tuple[str, ...]:
 def _keep_in_order(
     stored: dict[str, Any], name: str, value: float, defaults: Mapping[str, Any]
 ) -> None:
-    """Splitting twice never begins before splitting once: the other threshold gives way."""
+    """Keep the threshold for two splits at or above the first by moving the unset threshold."""
     start = name.removesuffix("once").removesuffix("twice")
     first = f"{start}once"
     second = f"{start}twice"

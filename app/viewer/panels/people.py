@@ -19,7 +19,7 @@ class PeopleList:
     """A button with the present person, which opens the list."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop, rows: DisplayRows) -> None:
-        """rows: those with the button."""
+        """rows: the panel's rows, among them the button."""
         self._gui = app.gui
         self._messages = app.messages
         self._portraits = app.portraits
@@ -27,10 +27,10 @@ class PeopleList:
         self._rows = rows
 
     def draw(self, called: str) -> None:
-        """Draw the row; called: the name or number of the visible head."""
+        """Draw the row. called: name or number of the visible head."""
         present = int(called) if called.isdecimal() else called
         people: list[int | str] = [BUILT_IN, COARSE, *NAMED]
-        people += range(20)  # and some without names
+        people += range(20)  # and persons without names
         if present not in (*people, OWN):
             people.append(present)
         self._portraits.begin(people)
@@ -93,5 +93,5 @@ class PeopleList:
 
 
 def in_words(who: int | str) -> str:
-    """A head's words in the list: "Person 7, woman, about 60"."""
+    """Describe a person in the list, such as "Person 7, woman, about 60"."""
     return "Own head" if who == OWN else "Built-in" if who == BUILT_IN else head_in_words(who)

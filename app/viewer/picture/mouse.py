@@ -1,7 +1,7 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
-The left button drags skin, and orbits beside it. The right button orbits anywhere, the middle one
-or Shift pans, and the wheel zooms to the mouse. skin.py has a finger's effect on the skin.
+The left button drags skin; beside the skin it orbits. The right button orbits anywhere, the middle
+button or Shift pans, and the wheel zooms to the mouse. skin.py moves the skin during a drag.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Select = Callable[[str], None]
 
 
 class CameraMouse:
-    """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
+    """Turns and moves a camera by the mouse; subclasses give the left button more actions."""
 
     def __init__(self, view: SceneView, stage: Stage) -> None:
         self._view = view
@@ -63,7 +63,7 @@ class CameraMouse:
         """Respond to the mouse over the picture while no button is pressed."""
 
     def _take(self, io: Any) -> str:
-        """The action of the left button pressed here."""
+        """Return the action for a press of the left button here."""
         return "orbit"
 
     def _press(self, io: Any, button: int) -> None:
@@ -95,7 +95,7 @@ class CameraMouse:
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > click_distance)
 
     def _ray(self, io: Any) -> Ray:
-        """The ray through the mouse in the viewport under it."""
+        """Return the ray through the mouse, in the viewport under the mouse."""
         width, height = self._stage.surface.size
         x = io.mouse_pos.x * width / max(io.display_size.x, 1.0)
         y = height - io.mouse_pos.y * height / max(io.display_size.y, 1.0)
@@ -104,18 +104,18 @@ class CameraMouse:
         return Ray.through(self._view.camera, under[-1].area, (x, y))
 
     def _skin_under(self, io: Any) -> Floats64 | None:
-        """The point of the mesh under the mouse."""
+        """Return the point of the mesh under the mouse; None beside the mesh."""
         scene = self._stage.scene
         return skin_under(self._ray(io), scene.positions, scene.faces)
 
     def _zoom(self, io: Any) -> None:
-        """Zoom so that the point under the mouse stays: on skin, or at the target's distance."""
+        """Zoom about the point under the mouse, on the skin or at the target's distance."""
         camera = self._view.camera
         point = self._skin_under(io)
         before = self._view.camera.distance
         if point is None:
             point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
-        closest = 0.15 * camera.scene_radius  # so that a moving head stays far enough away
+        closest = 0.15 * camera.scene_radius  # a moving head stays this far away
         room = float(np.linalg.norm(camera.eye - point)) / closest
         zoom_per_notch = 1.1
         camera.zoom(min(zoom_per_notch**io.mouse_wheel, max(room, 1.0)))
@@ -130,7 +130,7 @@ class Mouse(CameraMouse):
     def __init__(
         self, view: SceneView, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
-        """grab: makes a finger. select_muscle: takes the name of a clicked muscle."""
+        """grab: begins to drag the skin. select_muscle: gets the name of a clicked muscle."""
         super().__init__(view, stage)
         self._messages = messages
         self._grab = grab
@@ -138,7 +138,7 @@ class Mouse(CameraMouse):
 
     def forget(self) -> None:
         super().forget()
-        if self.skin_drag is not None:  # or the skin would stay pulled
+        if self.skin_drag is not None:  # otherwise the skin would stay pulled
             self.skin_drag.drop()
         self.skin_drag = None
 
@@ -155,7 +155,7 @@ class Mouse(CameraMouse):
             self._view.hovered = self._muscle_under(io)
 
     def _muscle_under(self, io: Any) -> str | None:
-        """The muscle under the mouse, the first one for a pull; None beside the skin."""
+        """Return the muscle under the mouse; None beside the skin."""
         face = self._stage.scene.face
         point = None if face is None else self._skin_under(io)
         if face is None or point is None:

@@ -1,7 +1,7 @@
-"""Small pictures of persons, to choose from: a process of low priority draws them, once.
+"""Small pictures of persons for a list; a process of low priority draws each picture once.
 
-The window goes on meanwhile, and shows names until a picture comes. The user's cache keeps pictures
-for the present state of the program.
+Until a picture arrives, the window shows a name alone. The user's cache stores the pictures until
+the program changes.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from ...pictures import Image, save_png
 from ...scenes import BUILT_IN, build_face, called_head
 from ...workers import Send, WorkerPool, give_way, share_of_cores
 
-SIDE = 128  # of a square picture [pixels]
+SIDE = 128  # side of a square picture [pixels]
 
 
 class Portraits:
-    """The pictures of a window."""
+    """The pictures of persons in one window."""
 
     def __init__(self, gl: moderngl.Context, wake: Callable[[], None]) -> None:
-        """gl: the window's context. wake: a thread calls it when a picture has come."""
+        """gl: the window's context. wake: a thread calls this function when a picture arrives."""
         self._gl = gl
         self._wake = wake
         self._pool = WorkerPool(share_of_cores())
@@ -46,7 +46,7 @@ class Portraits:
         self._textures: dict[int | str, moderngl.Texture] = {}
 
     def begin(self, people: Sequence[int | str]) -> None:
-        """Begin to read or draw pictures of these persons in this order, unless this has begun."""
+        """Begin to read or draw pictures of these persons in this order, unless begun already."""
         if self._is_begun:
             return
         self._is_begun = True
@@ -55,7 +55,7 @@ class Portraits:
         thread.shutdown(wait=False)
 
     def _find(self, people: Sequence[int | str]) -> None:
-        """In a thread: take stored pictures, and let a process draw the others."""
+        """Take stored pictures, and let a process draw the others; runs in a thread."""
         missing = []
         for who in people:
             image = kept_portrait(who)
@@ -65,7 +65,7 @@ class Portraits:
                 self._take((who, image))
         if not missing:
             return
-        # Names suffice without pictures, so the end of the process does not matter.
+        # The process may fail, because the list also works with names alone.
         self._pool.run(draw_portraits, missing, on_message=self._take, attempts=1)
 
     def _take(self, drawn: tuple[int | str, Image]) -> None:
@@ -75,11 +75,11 @@ class Portraits:
 
     @property
     def has_news(self) -> bool:
-        """Whether a picture has come."""
+        """Whether a picture has arrived."""
         return bool(self._waiting)
 
     def take_in(self) -> None:
-        """Make textures of the pictures that have come; in the window's thread, once a frame."""
+        """Make textures of new pictures; the window's thread calls this once a frame."""
         while self._waiting:
             name, image = self._waiting.popleft()
             texture = self._gl.texture((SIDE, SIDE), 3, image.tobytes(), alignment=1)
@@ -88,7 +88,7 @@ class Portraits:
             self._textures[name] = texture
 
     def of(self, who: int | str) -> imgui.ImTextureRef | None:
-        """The picture of a person, None if it is not drawn yet."""
+        """Return the picture of a person; None if it is not drawn yet."""
         drawn = self._textures.get(who)
         return None if drawn is None else imgui.ImTextureRef(drawn.glo)
 
@@ -98,20 +98,20 @@ class Portraits:
 
 
 def draw_portraits(people: Sequence[int | str], send: Send) -> None:
-    """In a process: draw each person at rest, keep the picture, and send it with name or number."""
+    """Draw each person at rest, store the picture and send it; runs in a process."""
     give_way(10)  # so that the window stays fast
     _remove_stale()
     for who in people:
         scene = build_face(None if who == BUILT_IN else called_head(who))
         with Capture(scene, CaptureOptions((SIDE, SIDE))) as capture:
             image = capture.draw_image()
-        with contextlib.suppress(UserError):  # it is drawn again the next time
+        with contextlib.suppress(UserError):  # an unsaved picture is drawn again next time
             save_png(_file_of(who), image)
         send((who, image))
 
 
 def kept_portrait(who: int | str) -> Image | None:
-    """The stored picture of a person, shape (SIDE, SIDE, 3); None if there is none."""
+    """Return the stored picture of a person, shape (SIDE, SIDE, 3); None if there is none."""
     try:
         with PIL.Image.open(_file_of(who)) as picture:
             image = np.asarray(picture.convert("RGB"))
@@ -126,7 +126,7 @@ def _file_of(who: int | str) -> Path:
 
 @cache
 def _program() -> str:
-    """A digest of the installed program: if one of its files changes, pictures may, too."""
+    """Return a digest of the program's files, because a changed file may change the pictures."""
     digest = hashlib.sha256(risorius.__version__.encode())
     for package in (risorius, app, assets, refine, render, sim):
         for folder in map(Path, package.__path__):

@@ -1,7 +1,7 @@
 """The skin under the mouse: its place, its muscle, and a finger that pulls it.
 
-Muscles and jaw alone bring the skin as near to the mouse as they can (sim.Pull), so it keeps its
-visible place after its release. Skin that is only pulled hangs on springs.
+Muscles and jaw bring the skin as near to the mouse as they can (sim.Pull), so it keeps its place
+after its release. Skin that is pulled without muscles hangs on springs, and swings back.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Ray:
     def through(
         cls, camera: render.OrbitCamera, viewport: render.Rectangle, place: tuple[float, float]
     ) -> Ray:
-        """The ray of `place` [pixels from the lower left corner of the surface]."""
+        """Return the ray through `place` [pixels from the lower left corner of the surface]."""
         left, bottom, width, height = viewport
         to_clip = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
         x = 2.0 * (place[0] - left) / width - 1.0
@@ -44,20 +44,20 @@ class Ray:
         return cls(near, (far - near) / np.linalg.norm(far - near))
 
     def at_depth_of(self, point: Floats64, axis: Floats64) -> Floats64:
-        """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
+        """Intersect the ray with the plane through `point` normal to `axis` (the line of sight)."""
         along = float((point - self.origin) @ axis) / float(self.direction @ axis)
         met: Floats64 = self.origin + along * self.direction
         return met
 
 
 def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats64 | None:
-    """The nearest point of the mesh that the ray meets from outside, or None.
+    """Return the nearest point where the ray meets the mesh from outside, or None.
 
-    Only triangles whose corners lie around the ray are tested.
+    Only triangles whose bounding rectangle across the ray contains it are tested.
     """
-    axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
-    # A ray that meets an edge must not slip between its two triangles by the last bit.
-    rounding = 1e-9  # of a triangle; [mm] too
+    axes = np.linalg.svd(ray.direction[None])[2][1:]  # two directions across the ray
+    # Rounding errors must not let a ray pass between the two triangles of an edge.
+    rounding = 1e-9  # in barycentric coordinates, and in [mm]
     for aside in ((positions - ray.origin) @ axis for axis in axes):
         corners = aside[faces]
         faces = faces[(corners.min(axis=1) < rounding) & (corners.max(axis=1) > -rounding)]
@@ -71,24 +71,24 @@ def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats
 
 
 def muscle_at(simulation: sim.Simulation, point: Floats64) -> str | None:
-    """The muscle at a point (3,) of the skin, if any."""
-    return simulation.anatomy.muscle_at(point, 14.0)  # [mm] from a fibre, at most
+    """Return the muscle at a point (3,) of the skin, or None."""
+    return simulation.anatomy.muscle_at(point, 14.0)  # [mm] from a fibre at most
 
 
 class SkinDrag:
-    """A finger that drags the skin."""
+    """Drags the skin by the mouse, like a finger on it."""
 
     def __init__(
         self, session: Session, settings: Settings, point: Floats64, sight: Floats64, poses: bool
     ) -> None:
-        """sight: direction of the view to the point. poses: whether muscles shall hold the skin."""
+        """sight: direction from the camera to the point. poses: whether muscles move the skin."""
         self._session = session
         self._sight = sight
         self.point = point
         self._simulation: sim.Simulation = session.scene.simulation  # type: ignore[attr-defined]
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
-        finger_radius = 16.0  # [mm] the finger's radius
+        finger_radius = 16.0  # [mm]
         self._vertices = np.flatnonzero(distance < finger_radius)
         if not len(self._vertices):
             self._vertices = distance.argmin(keepdims=True)
@@ -98,27 +98,27 @@ class SkinDrag:
         self.offset = np.zeros(3)
         self._solved = np.zeros(3)
         self._due = 0.0
-        self._line: Message = None  # of the last answer; shown while the finger is there
+        self._line: Message = None  # message about the last solution
         poses = poses and not session.live_override.is_on  # a live face sets the pose itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.framing.focus[0]) > finger_radius
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )
-        self._own: dict[str, float] = {}  # former values of solved controls
-        self._pull: sim.Pull | None = None  # made at the first motion: a click need not wait
+        self._own: dict[str, float] = {}  # values of solved controls before the drag
+        self._pull: sim.Pull | None = None  # made at the first motion, so that a click is fast
 
     def to(self, point: Floats64) -> Message:
-        """Drag to a point, or toward a point too far away; once in each frame."""
+        """Drag the skin to a point, or toward it if it is too far; called once in each frame."""
         self.offset = offset = point - self.point
         if not self._candidates:
             length = float(np.linalg.norm(offset))
-            most_drag_distance = 45.0  # [mm] of a drag: more would turn the skin inside out
+            most_drag_distance = 45.0  # [mm]: a longer drag would turn the skin inside out
             shortened = most_drag_distance * np.tanh(length / most_drag_distance)
             offset = offset * (shortened / max(length, 1e-9))
             self._simulation.touch.drag(self._vertices, self._from + offset, self._firmness)
             return None
-        # A dense head takes long, so at least half of the time is reserved for the picture.
+        # Solving for a dense head takes long, so at most half of the time is used for it.
         begin = time.perf_counter()
         if begin < self._due or np.array_equal(offset, self._solved):
             return self._line
@@ -127,11 +127,11 @@ class SkinDrag:
         return self._line
 
     def muscle(self) -> str | None:
-        """The muscle under the finger, if any."""
+        """Return the muscle at the dragged point, or None."""
         return muscle_at(self._simulation, self.point)
 
     def let_go(self) -> Message:
-        """End the drag: muscles hold the skin, or it swings back; return the solved controls."""
+        """End the drag: muscles hold the skin, or it swings back; return a message about them."""
         self.drop()
         if self._pull is None:
             return None
@@ -145,7 +145,7 @@ class SkinDrag:
         self._simulation.touch.end_drag()
 
     def _solve(self) -> Message:
-        """Set the solved controls, put back others set before, and report the solved ones."""
+        """Set the solved controls, restore those no longer solved, and return a message."""
         if self._pull is None:
             finger = self._vertices, self._firmness
             self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
@@ -155,7 +155,7 @@ class SkinDrag:
         pull.targets = self._at_rest + self.offset
         pull.solve()
         solved = {name: value for names, value in pull.changes.items() for name in names}
-        present = self._session.values  # a recorded script may move others meanwhile
+        present = self._session.values  # a script may move other controls while it is recorded
         self._own = {name: present[name] for name in solved} | self._own
         for name, value in {**self._own, **solved}.items():
             if value != present[name]:
@@ -167,14 +167,15 @@ class SkinDrag:
 
 
 def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:
-    """The controls that a finger on the skin may move; a tuple holds those that move together.
+    """Return the controls that a drag may move; controls in one tuple move together.
 
-    Beside the middle (`is_aside`) linked sides move alike, so no control moves to one side.
+    If sides are linked, a drag beside the middle (`is_aside`) moves both sides alike, so controls
+    that move the face to one side are left out.
     """
     found = list[tuple[str, ...]]()
     values = session.values
     lowest = session.scene.simulation.controls.lowest  # type: ignore[attr-defined]
-    # Groups of controls that no finger on the skin moves.
+    # Prefixes of controls that a drag never moves.
     unpulled_prefixes = ("gaze_", "head_", "tongue_", "lips_closed")
     for name in lowest:
         twin = twin_of(name)

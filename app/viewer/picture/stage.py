@@ -1,11 +1,11 @@
 """The scene in the window: camera, viewports, colours, overlays, and the times of drawing.
 
-It is drawn by `Pipeline.draw`, like films, and each part of the paper's Figure 1 is timed. It is
-drawn if something has changed, and, during motion, as finely as this machine can. A scene at rest,
-a screenshot and a film are always drawn in full. During motion, slow frames reduce the detail at
-once to the level that is expected to be fast enough. The detail rises by one level when a new
-motion begins, or after a second or two with ample time. More than one level lies between slow and
-ample, so the detail does not oscillate.
+`Pipeline.draw` draws it, as for films; each part of the paper's Figure 1 is timed. The scene is
+drawn only after a change. A scene at rest, a screenshot and a film always have full detail.
+During motion, slow frames reduce the detail at once to the level that is expected to be fast
+enough. After fast frames, the detail rises by one level when a new motion begins, or after a second
+or two. The limits for slow and fast frames are more than one level apart, so the detail does not
+oscillate.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class SceneView:
 
     area: the scene's part of the window: left, top, width, height [window units].
     pointed: the muscles of the control under the mouse, with their shares.
-    hovered: the muscle under the mouse on the skin; None beside it.
+    hovered: the muscle of the skin under the mouse; None beside the skin.
     """
 
     camera: render.OrbitCamera
@@ -54,7 +54,7 @@ class SceneView:
         self.fit_scene()
 
     def fit_scene(self) -> None:
-        """Set the camera as at first: all of the scene; UserError if the script names none."""
+        """Frame the whole scene from the script's view; UserError for an unknown view."""
         script = self._session.script
         check_camera(script.camera, script.source)
         self.camera = whole_scene(self._session.scene, script.camera)
@@ -82,7 +82,7 @@ class SceneView:
         return self.pixels(self.area)
 
     def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
-        """A part of the window in pixels of the framebuffer."""
+        """Convert a part of the window to pixels of the framebuffer."""
         display = imgui.get_io().display_size
         width, height = self._surface.frame_size  # size of the next picture
         across = width / max(display.x, 1.0)
@@ -94,7 +94,7 @@ class SceneView:
 
     @property
     def letter(self) -> float:
-        """Size of words in the window [pixels]; captions have at least this size."""
+        """Size of letters in the window [pixels]; captions have at least this size."""
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
     @property
@@ -108,7 +108,7 @@ class SceneView:
         return place, display, self._settings.theme, self.viewport, lit
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
-        """The line between the two halves of a comparison, and the knob to drag it by."""
+        """Return the line between the halves of a comparison, and the knob of a wipe."""
         if self.display.compare == "off":
             return []
         left, bottom, width, height = self.viewport
@@ -170,11 +170,11 @@ class Stage:
         self.refined = self.static
 
     def viewports(self, display: Display, area: render.Rectangle) -> list[Viewport]:
-        """The viewports in an area of the frame: one, or two for a comparison."""
+        """Return the viewports in an area of the frame: one, or two for a comparison."""
         left, bottom, width, height = area
-        if display.compare == "off" or width < 2:  # less than a pixel for each
+        if display.compare == "off" or width < 2:  # a side would have less than a pixel
             return [Viewport(self.refined if display.is_refined else self.static, area)]
-        least_share = 0.08  # of the picture that each side of a comparison keeps
+        least_share = 0.08  # smallest share of the picture for each side
         share = min(max(display.share, least_share), 1.0 - least_share)
         middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
@@ -184,7 +184,7 @@ class Stage:
         return [Viewport(self.beside, first), Viewport(self.refined, second)]
 
     def draw(self, view: SceneView, *, is_photo: bool = False) -> None:
-        """Draw the scene with the surface's `detail`; a photo omits overlays of the mouse."""
+        """Draw the scene with the surface's `detail`; a photo omits muscles under the mouse."""
         display = view.display
         timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
@@ -200,7 +200,7 @@ class Stage:
     def _labels(
         self, view: SceneView, viewports: Sequence[Viewport], style: render.Style
     ) -> list[Label]:
-        """The labels of each side of a comparison, and the meaning of colours."""
+        """Return a label for each side of a comparison, and the key of colours."""
         texts = [each.drawn.caption for each in viewports if len(viewports) > 1]
         places = [each.seen for each in viewports]
         has_splits = any(each.drawn is not self.static for each in viewports)
@@ -208,18 +208,18 @@ class Stage:
         return labels(texts, places, has_bar=has_bar, least=view.letter)
 
     def _lit_muscles(self, view: SceneView) -> list[render.Lines]:
-        """The muscles of a control under the mouse, or softly the one under it on the skin."""
+        """Return fibres of the pointed control's muscles, or faint fibres of the hovered muscle."""
         if view.pointed or view.hovered is None:
             return pointed_lines(self.scene, view.pointed)
         return pointed_lines(self.scene, {view.hovered: 1.0}, clarity=0.35)
 
     def draw_image(self, view: SceneView) -> Image:
-        """The picture without panels, in full detail, with captions and a colour bar."""
+        """Return the picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL_DETAIL
         self.draw(view, is_photo=True)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
-        channels = 3 if view.background else 4  # premultiplied
+        channels = 3 if view.background else 4  # colours are premultiplied by alpha
         frame = self.surface.read_scene(channels)[top : top + height, left : left + width]
         shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
         seen = [each.seen for each in self.viewports(view.display, view.viewport)]
@@ -229,7 +229,7 @@ class Stage:
 def pointed_lines(
     scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
 ) -> list[render.Lines]:
-    """The muscle fibres of a control under the mouse; larger shares are clearer.
+    """Return the fibres of a control's muscles; muscles with larger shares are more opaque.
 
     shares: name of a muscle -> its share; a name without side means both sides. clarity: the
     opacity of the muscle with the largest share.
@@ -259,7 +259,7 @@ def _map_behind(light: str) -> render.MapBackground:
 def style_of(
     display: Display, background: render.Background | render.MapBackground | None
 ) -> render.Style:
-    """The renderer's style for the user's display settings."""
+    """Return the renderer's style for the user's display settings."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(
         shading=render.Shading(display.shading),
@@ -274,8 +274,9 @@ def style_of(
     )
 
 
-# One sample, with smoothed edges (edges.glsl); then a little blurred.
-# Two samples would not help: software draws four. With four samples at 0.75 a frame takes 0.8.
+# After full detail: one sample with smoothed edges (edges.glsl), then smaller, blurred pictures.
+# Two samples would not be faster, because software OpenGL then draws four. With four samples at
+# scale 0.75, a frame takes 0.8 of the first level's time.
 LEVELS = (
     FULL_DETAIL,
     render.Detail(samples=0, scale=1.0),
@@ -283,17 +284,16 @@ LEVELS = (
     render.Detail(samples=0, scale=0.6),
     render.Detail(samples=0, scale=0.5),
 )
-# Processor time of a whole frame of the window at 1280 x 720, as parts of the first level
-# (measured 2026-11-29).
+# Processor time of a whole frame at 1280 x 720, relative to the first level (measured 2026-11-29).
 COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
-PATIENCE_FRAMES = 4  # frames in a row that decide
-CALM_FRAMES = 40  # frames in a row after which a moving picture may become finer
+PATIENCE_FRAMES = 4  # slow frames in a row that reduce the detail
+CALM_FRAMES = 40  # fast frames in a row after which a moving picture becomes finer
 
 
 class LevelOfDetail:
     """Picks a level of detail by the time that frames took."""
 
-    FIRST_SOFTWARE_LEVEL = 1  # to avoid stutter in the first second
+    FIRST_SOFTWARE_LEVEL = 1  # avoids stutter in the first second
 
     def __init__(self, *, is_software: bool) -> None:
         self.level = self.FIRST_SOFTWARE_LEVEL if is_software else 0
@@ -307,19 +307,19 @@ class LevelOfDetail:
 
     @property
     def unhurried(self) -> render.Detail:
-        """The detail for a scene that seldom moves: software's first level, or a finer one."""
+        """The detail for a scene that seldom moves: at least the first level of software OpenGL."""
         return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:
-        """Note that a motion begins: at this moment nobody notices more detail."""
+        """Note that a motion begins, when nobody notices a rise of the detail."""
         if self._fast >= PATIENCE_FRAMES:
             self._rise()
         self._forget()
 
     def note(self, seconds: float) -> None:
         """Note the whole time of a frame of a moving scene [s]."""
-        slow_seconds = 0.045  # [s] a frame; more than 20 a second are promised
-        ample_seconds = 0.024  # [s] a frame: the next finer level is then safe
+        slow_seconds = 0.045  # [s] for a frame; more than 20 frames a second are promised
+        ample_seconds = 0.024  # [s] for a frame: the next finer level is then fast enough
         self._slow = [*self._slow, seconds] if seconds > slow_seconds else []
         self._fast = self._fast + 1 if seconds < ample_seconds else 0
         if len(self._slow) >= PATIENCE_FRAMES:
@@ -333,7 +333,7 @@ class LevelOfDetail:
             self._forget()
 
     def _rise(self) -> None:
-        """Draw finer by one level."""
+        """Raise the detail by one level."""
         self.level = max(self.level - 1, 0)
 
     def _forget(self) -> None:
@@ -363,10 +363,11 @@ class Painter:
         return self._painted == (self._view.state, FULL_DETAIL)
 
     def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:
-        """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
+        """Draw the scene if it has changed or lacks full detail; return whether it has changed.
 
-        elapsed: since the last frame [s]. has_moved: whether it moved visibly. is_alive: it
-        only lives, and will move again in a moment: finer pictures in between would flicker.
+        elapsed: time since the last frame [s]. has_moved: whether the scene has moved visibly.
+        is_alive: whether the face only has idle life: it moves again soon, and full detail in
+        between would flicker.
         """
         surface = self._stage.surface
         surface.area = self._view.viewport

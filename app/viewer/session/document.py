@@ -23,9 +23,9 @@ from ...script.script_file import preface_of, save_script
 class SceneControls:
     """Every control of every layer (muscles, jaw, gaze, action units, expressions, visemes).
 
-    limits: the lowest and highest value of each. muscles: the lowest controls, to which all others
-    add; all controls of a scene without layers. groups: title -> controls, the highest layer first;
-    controls for both sides of a muscle are beside its sides.
+    limits: the lowest and highest value of each control. muscles: the controls of the lowest layer,
+    which all other controls move; without layers, all controls. groups: title -> controls, the
+    highest layer first; the group of muscles for both sides is left out.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -41,17 +41,17 @@ class SceneControls:
         }
 
     def alone(self, name: str) -> ControlValues:
-        """This control at its limit, and no other."""
+        """Return the pose with this control at its highest value, and all others at 0."""
         return self.limits.pose({name: self.limits[name][1]})
 
     def moved_by(self, values: Mapping[str, float]) -> frozenset[str]:
-        """The lowest controls that a pose moves."""
+        """Return the controls of the lowest layer that a pose moves."""
         active = (name for name, value in values.items() if value)
         return frozenset().union(*map(self._scene.moved_by, active))
 
 
 class LiveOverride:
-    """The controls of a live face, and their share: 0 (no effect) to 1 (they replace others)."""
+    """Overrides controls by a live face, with a share of 0 (no effect) to 1 (full replacement)."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -59,8 +59,8 @@ class LiveOverride:
         self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
-        """From now on override only these controls; unknown names are left out."""
-        if (names := tuple(controls)) != self._names:  # a stream has the same in each frame
+        """Set the overriding controls and their share; unknown names are left out."""
+        if (names := tuple(controls)) != self._names:  # a stream has the same names in each frame
             self._names = names
             self._known = tuple(name for name in names if name in self._limits)
             self._places = self._limits.places(self._known)
@@ -74,7 +74,7 @@ class LiveOverride:
         return self._share > 0.0
 
     def over(self, values: ControlValues) -> ControlValues:
-        """The overridden values; a mean of two values is also within their limits."""
+        """Return the overridden values; a weighted mean of two values stays within their limits."""
         if not self._share:
             return values
         numbers = values.numbers.copy()
@@ -86,9 +86,9 @@ _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
 
 class ScriptFile:
-    """The file of one script through all its changes; undo and redo share it.
+    """The file of one script, through all changes of the script, including undo and redo.
 
-    path: None as long as no file of the user holds the script.
+    path: None while no file of the user has the script.
     """
 
     def __init__(self, path: Path | None, saved: Script) -> None:
@@ -98,7 +98,7 @@ class ScriptFile:
 
     @classmethod
     def of(cls, script: Script) -> ScriptFile:
-        """The file of a script; examples and recordings have no file to save to."""
+        """Return the file of a script; its path is None for examples and recordings."""
         path = Path(script.source)
         is_own = not script.is_converted and path.is_file()
         is_own = is_own and not path.resolve().is_relative_to(str(files("risorius.assets")))
@@ -110,7 +110,7 @@ class ScriptFile:
 
     @property
     def objection(self) -> str:
-        """The loss if the file were written unasked, in words; "" for none."""
+        """The reason to ask before the file is replaced, in words; "" for none."""
         if self.path is None or not self.path.exists():
             return ""
         if _bytes_of(self.path) != self._bytes:
@@ -119,12 +119,12 @@ class ScriptFile:
 
     @property
     def _has_comments(self) -> bool:
-        """Whether there are comments that would be lost: all except those at the head."""
+        """Whether the file has comments below its head, which saving would remove."""
         text = (self._bytes or b"").decode(errors="replace")
         return "#" in _QUOTED.sub("", text.removeprefix(preface_of(text)))
 
     def save(self, script: Script, path: Path) -> None:
-        """Write the script to its new file; raises UserError if this fails."""
+        """Write the script to a file, its file from now on; raises UserError if this fails."""
         save_script(path, script)
         self.path = path
         self._saved = script
@@ -132,7 +132,7 @@ class ScriptFile:
 
 
 def _bytes_of(path: Path | None) -> bytes | None:
-    """The bytes of a file; None if it cannot be read."""
+    """Return the bytes of a file; None if it cannot be read."""
     try:
         return path.read_bytes() if path is not None else None
     except OSError:
@@ -143,21 +143,21 @@ def _bytes_of(path: Path | None) -> bytes | None:
 class Document:
     """A pose, a script, and the file of the script."""
 
-    values: Mapping[str, float] | None  # set by hand, without zeros; None: the script's values
+    values: Mapping[str, float] | None  # values by hand that are not 0; None: the script's
     script: Script
     file: ScriptFile  # the script's file
-    time: float = field(default=0.0, compare=False)  # [s] of the pose's time
+    time: float = field(default=0.0, compare=False)  # time of the pose [s]
 
 
 State = TypeVar("State")
 
 
 class History(Generic[State]):
-    """The noted states; the last one is the present."""
+    """States for undo and redo; `place` is the number of the present state."""
 
     def __init__(self, present: State) -> None:
         self._states = [present]
-        self.place = 0  # of the present state among them
+        self.place = 0  # number of the present state
 
     @property
     def can_undo(self) -> bool:
@@ -171,11 +171,11 @@ class History(Generic[State]):
 
     @property
     def present(self) -> State:
-        """The state that was noted, or returned to, last."""
+        """The state that was noted or restored last."""
         return self._states[self.place]
 
     def note(self, state: State) -> None:
-        """Note a change, and forget undone states. Equal states count once."""
+        """Add a changed state, and drop undone states; an equal state is ignored."""
         if state == self.present:
             return
         self._states[self.place + 1 :] = [state]
@@ -187,6 +187,6 @@ class History(Generic[State]):
         self._states[self.place] = state
 
     def go(self, place: int) -> State:
-        """Go to the state of this number, or to the nearest one."""
+        """Restore the state of this number, or of the nearest number."""
         self.place = min(max(place, 0), len(self._states) - 1)
         return self.present

@@ -1,6 +1,6 @@
 """A live face in the window: its commands, its calibration, and its override of the session.
 
-The live face overrides sliders and script; these keep the controls that it does not name.
+The live face overrides sliders and script, except for controls that its packets do not have.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from ...live.protocols import Listening, own_address
 from ..messages import Message
 from .session import Session
 
-PACKET_WAIT = 0.008  # [s] that a frame waits for a packet: half a phone's frame
+PACKET_WAIT = 0.008  # [s] for which a frame waits for a packet: half of a phone's frame
 
 
 def check_scene(name: str) -> None:
@@ -33,7 +33,7 @@ class LiveCommands:
     def __init__(
         self, session: Session, show_panel: Callable[[], None], wake: Callable[[], None]
     ) -> None:
-        """show_panel: shows the panel with the live face's state; called at its beginning.
+        """show_panel: shows the panel with the live face's state; called when listening begins.
 
         wake: wakes a window that waits for events; another thread calls it.
         """
@@ -43,7 +43,7 @@ class LiveCommands:
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
-        self.has_changed = False  # whether the last `advance` changed the sender's state in words
+        self.has_changed = False  # whether the last `advance` changed the sender's state
         self._shown: object = None
 
     # Commands
@@ -65,21 +65,21 @@ class LiveCommands:
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
 
     def stop(self) -> None:
-        """Listen no longer; sliders or script move the face again."""
+        """Stop listening; sliders or script move the face again."""
         if self.face is not None:
             self.face.close()
         self.face = None
         self._session.live_override.take({}, 0.0)
 
     def toggle(self) -> Message:
-        """Begin to listen, or end it."""
+        """Start or stop listening."""
         if not self.is_on:
             return self.start(self.wanted)
         self.stop()
         return None
 
     def calibrate(self) -> Message:
-        """Take the face of the next half second as the neutral one."""
+        """Use the face in the next half second as neutral."""
         if self.face is not None:
             self.face.calibrate()
         return "Hold a neutral face, eyes on the camera ..."
@@ -87,13 +87,13 @@ class LiveCommands:
     # State for the window
 
     def advance(self, seconds: float) -> Message:
-        """Read the packets that came; their face overrides the session's controls."""
+        """Read new packets, and override the session's controls by their face."""
         face = self.face
         if face is None:
             self.has_changed = False
             return None
         was_calibrating = face.is_calibrating
-        face.advance(min(seconds, 0.1))  # [s] of easing at most, even after a longer frame
+        face.advance(min(seconds, 0.1))  # eases by this time [s] at most, even after a longer frame
         shown = face.state, face.received > 0
         self.has_changed = shown != self._shown
         self._shown = shown
@@ -109,7 +109,7 @@ class LiveCommands:
 
     @property
     def has_frame(self) -> bool:
-        """Whether a frame woke the window and `advance` has not read it."""
+        """Whether a packet has arrived that `advance` has not read yet."""
         return self.face is not None and self.face.has_frame
 
     @property
@@ -123,5 +123,5 @@ class LiveCommands:
         return self.face is not None and self.face.state is State.RECEIVING
 
     def due_in(self) -> float:
-        """Time that the window may sleep [s]: until the face is lost without packets."""
+        """Return the time [s] until the face counts as lost, for which the window may sleep."""
         return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")

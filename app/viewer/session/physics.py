@@ -1,9 +1,9 @@
-"""Times of the simulation's steps: real time, and none for a face at rest.
+"""Steps of the simulation in real time; a face at rest takes no steps.
 
 Real time is cut into steps of equal length, independent of the frame rate. Source: Fiedler 2004,
 "Fix your timestep!". While nobody moves the face, it has idle life, which only adds to controls
-that are 0. No slider moves, and idle life is not recorded, saved or undone; the muscles make it
-begin and end softly.
+that are 0. Idle life moves no slider, and is not recorded, saved or undone. It begins and ends
+softly, because muscles respond slowly.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from ...motion.life import Idle, Values
 from .session import Session
 
 STEP = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
-MOST_STEPS = 6  # a tenth of a second that a stalled window catches up
-# Share of a step that may be taken before it is due: frames of a 60 Hz screen that are a little
-# late or early then get one step each, and motion does not stutter.
+MOST_STEPS = 6  # in one frame: after a stall, the window catches up a tenth of a second
+# A step may be taken early by this share of its length: frames of a 60 Hz screen that are slightly
+# late or early then get one step each, so motion does not stutter.
 EARLY_SHARE = 0.25
-CALM_SECONDS = 0.15  # [s] without change until physics rests and the scene is drawn in full
+CALM_SECONDS = 0.15  # [s] without change until physics rests, and the scene has full detail
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 
 Life = Callable[[float], Mapping[str, float]]  # seconds -> values to add to controls
@@ -37,9 +37,9 @@ Life = Callable[[float], Mapping[str, float]]  # seconds -> values to add to con
 class FrameTimes:
     """Milliseconds of the last frames that were drawn, for the window and benchmarks.
 
-    milliseconds: times by phase. whole: those of frames with events and panels, up to the next
-        frame.
-    steps: numbers of steps of the simulation.
+    milliseconds: times by phase. whole: times from the beginning of a frame to the next frame, with
+        events and panels.
+    steps: numbers of simulation steps.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class FrameTimes:
 
     @contextmanager
     def timed(self, phase: str) -> Iterator[None]:
-        """Add the time that the block takes to the present frame's."""
+        """Add the block's time to the present frame's time of a phase."""
         if self._is_over:
             for column in (*self.milliseconds.values(), self.whole):
                 column.append(0.0)
@@ -66,13 +66,13 @@ class FrameTimes:
         self.milliseconds[phase][-1] += 1e3 * (time.perf_counter() - start)
 
     def next_frame(self, elapsed: float) -> None:
-        """Begin with the next frame, `elapsed` seconds after the last; one without work is none."""
+        """Begin the next frame, `elapsed` seconds after the last; skip frames without work."""
         if not self._is_over:
             self.whole[-1] = 1e3 * elapsed
         self._is_over = True
 
     def median(self, phase: str) -> float:
-        """The median of a phase [ms] over the frames with this phase; 0 before the first."""
+        """Return the median of a phase [ms] over the frames with this phase; 0 before the first."""
         times = [each for each in self.milliseconds[phase] if each > 0.0]
         return float(np.median(times)) if times else 0.0
 
@@ -90,9 +90,9 @@ class Clock:
         self._owed = 0.0
 
     def steps(self, elapsed: float, early: float = EARLY_SHARE) -> int:
-        """Number of steps after `elapsed` more seconds; the rest of a stall is forgotten.
+        """Return the number of due steps after `elapsed` more seconds, MOST_STEPS at most.
 
-        early: share of a step that may be taken before it is due.
+        early: share of its length by which a step may be taken early.
         """
         self._owed += max(elapsed, 0.0)
         due = max(int(self._owed / STEP + early), 0)
@@ -104,7 +104,7 @@ class Clock:
 
 
 class Physics:
-    """Lets time pass in a session."""
+    """Advances the scene of a session in time."""
 
     def __init__(self, session: Session, times: FrameTimes) -> None:
         self._session = session
@@ -115,13 +115,13 @@ class Physics:
     def begin_anew(self) -> None:
         """Begin again with another scene, which may move at once."""
         self._times.clear()
-        self.has_moved = False  # whether it moved visibly since `_seen`
-        self._seen = self._session.scene.positions.copy()  # at the last visible motion
+        self.has_moved = False  # whether the face moved visibly since `_seen`
+        self._seen = self._session.scene.positions.copy()  # vertices at the last visible motion
         self._seen_bones = self._session.scene.bone_transforms()
         self._left_for = 0.0  # [s] without a user's motion of the face
         self._posed: ControlValues | None = None  # values at the last step
         self._still_at = self._seen  # vertices at their last motion
-        self._still_for = 0.0  # [s] without motion from there
+        self._still_for = 0.0  # [s] without motion since then
 
     @property
     def is_at_rest(self) -> bool:
@@ -147,7 +147,7 @@ class Physics:
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. Raises UserError if the simulation failed.
         """
-        # The same share for a packet of a live face, which must not wait for a frame.
+        # EARLY_SHARE after a packet of a live face, which must not wait for the next frame.
         urgent_early_share = 0.95
         steps = self._clock.steps(seconds, urgent_early_share if is_urgent else EARLY_SHARE)
         session = self._session
@@ -156,7 +156,7 @@ class Physics:
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
-        if is_driven:  # even in a frame too short for a step: the window must stay awake
+        if is_driven:  # even in a frame without a step, because the window must stay awake
             self._still_for = 0.0
         self.has_moved = False
         if steps == 0 or (life is None and self.is_at_rest):
@@ -178,7 +178,7 @@ class Physics:
             self._seen_bones = scene.bone_transforms()
 
     def _step(self, steps: int, life: Life | None) -> None:
-        """Take steps."""
+        """Take steps; raises UserError if the simulation fails."""
         session = self._session
         scene = self._session.scene
         with self._times.timed("simulation"):
@@ -195,7 +195,7 @@ class Physics:
     def _is_to_be_seen(self) -> bool:
         """Whether the face has moved visibly since its last visible motion."""
         scene = self._session.scene
-        seen_distance = 0.2  # [mm] of idle motion that is drawn: about half a pixel
+        seen_distance = 0.2  # [mm] of motion, about half a pixel
         if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > seen_distance:
             return True
         turns = (
@@ -210,7 +210,7 @@ SLEEP_DELAY = 600.0  # [s] without input: the user has left, and the machine may
 
 
 class IdleLife:
-    """The life of the face in a window."""
+    """Gives idle life to the face in a window."""
 
     def __init__(
         self,
@@ -218,7 +218,7 @@ class IdleLife:
         is_wanted: Callable[[], bool],
         eye: Callable[[], Floats64],
     ) -> None:
-        """is_wanted: whether the user wants it. eye: where the viewer's is, shape (3,) [mm]."""
+        """is_wanted: whether the user wants idle life. eye: the viewer's place, shape (3,) [mm]."""
         self._session = session
         self._is_wanted = is_wanted
         self._eye = eye
@@ -227,7 +227,7 @@ class IdleLife:
         self._without_input = 0.0  # [s]
 
     def note_input(self) -> None:
-        """Note input: a user is there."""
+        """Note input, which shows that a user is there."""
         self._without_input = 0.0
 
     @property
@@ -245,7 +245,7 @@ class IdleLife:
         return not (is_moved or session.live_override.is_on) and self._without_input < SLEEP_DELAY
 
     def after(self, seconds: float, *, is_held: bool) -> Values:
-        """The values to add to the controls, `seconds` after the last call.
+        """Return the values to add to the controls, `seconds` after the last call.
 
         is_held: whether the user holds something, so that the face only looks at the user.
         """

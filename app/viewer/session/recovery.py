@@ -1,10 +1,10 @@
-"""Unsaved work that survives the end of the window: a signal, a crash, a closed terminal.
+"""Keeps unsaved work if a signal, a crash or a closed terminal ends the window.
 
-A script beside the settings keeps the work. It is written some seconds after a change, and when a
-signal stops the process. A pose by hand is a key in it. The file is removed when the work is saved
-or discarded. The next window adds the time of writing to the name of a file that it finds, and the
-user can open this file like any script. The first of several windows with the same scene locks the
-file; the system releases the lock when the process ends.
+A script beside the settings stores the work, with a pose by hand as a key. It is written some
+seconds after a change, and when a signal stops the process. It is removed when the work is saved or
+discarded. If the next window finds such a file, it adds the time of writing to the file's name, and
+the user can open the file like any script. The first of several windows with the same scene locks
+the file; the system releases the lock when the process ends.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from ...staging import locked
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
-INTERVAL = 2.0  # [s] after a change, in which further changes may come
+INTERVAL = 2.0  # [s] from a change to its writing, to include further changes
 
 
 class Recovery:
-    """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
+    """Stores a session's unsaved work in a folder; does nothing without a folder."""
 
     found: Path | None = None  # the script that an earlier window left behind
 
@@ -60,7 +60,7 @@ class Recovery:
         """
         if self._path is None:
             return
-        pause_factor = 30.0  # or this many times the time of writing, for long recordings
+        pause_factor = 30.0  # least pause, in times of writing, for long recordings
         if not self._session.work.unsaved:
             if self._safe is not None:
                 self.discard()
@@ -103,7 +103,7 @@ class Recovery:
 
     @contextlib.contextmanager
     def guarding(self) -> Iterator[None]:
-        """Write unsaved work if the block is stopped or fails; if it just ends, remove the file."""
+        """Write unsaved work if the block is stopped or fails; else remove the file at its end."""
         try:
             with cleaned_up_if_stopped(self.save):
                 yield
@@ -120,7 +120,7 @@ class Recovery:
 
 
 def unsaved_script(session: Session) -> Script:
-    """The script with the recording, and with a pose by hand as a key at the present time."""
+    """Return the script with the recording; a pose by hand becomes a key at the present time."""
     recorder = session.recorder
     script = (recorder.script() if recorder is not None else None) or session.script
     if _has_pose(session):
@@ -136,7 +136,7 @@ def _has_pose(session: Session) -> bool:
 
 
 def _state(session: Session) -> object:
-    """The state of unsaved work; two states differ if the work differs, and compare fast."""
+    """Return a value to compare fast; two values differ if the unsaved work differs."""
     return (
         session.script if session.work.script_is_unsaved else None,
         session.values if _has_pose(session) else None,

@@ -1,6 +1,6 @@
 """A user's work on a face: controls, a script in time, a recording, undo, unsaved work.
 
-This module knows the scene, which adds up all `values`, but no windows.
+This module uses the scene, which adds up all `values`. It is independent of windows.
 """
 
 from __future__ import annotations
@@ -34,18 +34,18 @@ class Session:
         self.file = ScriptFile.of(script)
         self.time = 0.0
         self.speed = 1.0
-        self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
-        self.pose_is_unsaved = False  # made by hand; an expression's button can repeat itself
-        self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
-        self._is_touched = False  # by hand, since the last note
+        self.is_playing = self.is_looping = self.is_keying = False  # keying: changes become keys
+        self.pose_is_unsaved = False  # a pose by hand, except from an expression's button
+        self.is_following = any(self.values.numbers)  # the script; not at first if it is neutral
+        self._is_touched = False  # whether a control was moved by hand since the last `note`
         self._moved = set[str]()  # controls moved by hand since the face followed the script
-        self.recorder: Recorder | None = None  # of the present recording
+        self.recorder: Recorder | None = None  # recorder of the present recording
         self.live_override = LiveOverride(scene.limits)  # not a part of undo
         self.history = History(self._document())
         self.work = Work(self)
 
     def move_to(self, scene: Scene) -> None:
-        """Continue with another scene and the same work; UserError if it has other controls."""
+        """Continue with another scene and the same work; UserError if the scene lacks controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
@@ -68,7 +68,7 @@ class Session:
             self._moved |= names
 
     def toggle_alone(self, name: str) -> None:
-        """Show this control alone at its limit, or the neutral face if it is shown already."""
+        """Show this control alone at its limit; if it is shown already, show the neutral face."""
         pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
@@ -77,7 +77,7 @@ class Session:
         return self.values == self.controls.alone(name)
 
     def neutral(self) -> None:
-        """Set all controls to zero; the skin swings back by itself."""
+        """Set all controls to zero; the skin swings back."""
         self.set_pose(self.scene.limits.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
@@ -86,7 +86,7 @@ class Session:
         self.set_pose(self.scene.limits.pose(values))
 
     def set_pose(self, pose: ControlValues, *, is_unsaved: bool = True) -> None:
-        """Set a value for each control; a recording records those that differ."""
+        """Set all controls to a pose; a recording records the changed controls."""
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
@@ -99,7 +99,7 @@ class Session:
 
     @property
     def current(self) -> ControlValues:
-        """The present value of each control, by hand or script, overridden by a live face."""
+        """The value of each control by hand or script, overridden by a live face."""
         return self.live_override.over(self.values)
 
     @property
@@ -138,7 +138,7 @@ class Session:
         return self.history.can_undo or self._document() != self.history.present
 
     def undo(self) -> None:
-        """Undo the last change, or return to it if the face has moved since."""
+        """Undo the changes since the last noted state; without changes, undo that state."""
         self.go_to(self.history.place - (self._document() == self.history.present))
 
     def redo(self) -> None:
@@ -146,7 +146,7 @@ class Session:
         self.go_to(self.history.place + 1)
 
     def go_to(self, place: int) -> None:
-        """Go to the state of this number in the history."""
+        """Restore the state of this number in the history."""
         self._refuse_while_recording()
         document = self.history.go(place)
         self.is_playing = self._is_touched = False
@@ -164,7 +164,7 @@ class Session:
     # Time
 
     def toggle_playing(self) -> Message:
-        """Play or pause; at the end of the script, play it again."""
+        """Play or pause; at the end of the script, play from its beginning."""
         self.is_playing = not self.is_playing
         line = self.let_go() if self.is_playing else None
         is_over = self.time >= self.script.duration and not self.is_recording
@@ -173,7 +173,7 @@ class Session:
         return line
 
     def start_over(self) -> None:
-        """Begin with the first pose, held for a while, so that all replays begin alike."""
+        """Begin with the first pose, after a time to settle, so that all replays begin alike."""
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
@@ -182,7 +182,7 @@ class Session:
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
-        """Go to a time of the script with its pose; the message names released controls."""
+        """Go to a time of the script with its pose there; the message names released controls."""
         self._refuse_while_recording()
         line = self.let_go()
         self._go_to(time)
@@ -194,7 +194,7 @@ class Session:
         self.pose_is_unsaved = False
 
     def let_go(self) -> Message:
-        """Return to the script; the message names released controls, which undo restores."""
+        """Follow the script again; the message names released controls, which undo restores."""
         if self.is_following or self.is_recording:
             return None
         self.note()
@@ -214,9 +214,9 @@ class Session:
         return line
 
     def edit(self, script: Script, *, is_done: bool = True) -> None:
-        """Replace the script by a changed one; a face that follows it follows the change.
+        """Replace the script by a changed script; a face that follows it is updated.
 
-        is_done: False during a drag, which is not yet a step of undo.
+        is_done: False during a drag; a change is a step of undo only when it is done.
         """
         self._refuse_while_recording()
         self.script = script
@@ -235,7 +235,7 @@ class Session:
     def set_key(self, names: Iterable[str] | None = None) -> float:
         """Make the present face a key; returns its time [s].
 
-        names: those of the keyed controls, None for a whole pose. Others keep their values by hand.
+        names: the controls to key, None for a whole pose. Other controls keep their values by hand.
         """
         self._refuse_while_recording()
         time = self._key(self.current, names)
@@ -260,9 +260,9 @@ class Session:
         return time
 
     def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
-        """Let time pass: the script moves the controls, the scene follows them.
+        """Advance by `seconds` [s]: the script moves the controls, and the scene follows them.
 
-        beneath: values that are added to controls at 0; they never enter a script.
+        beneath: values to add to controls that are 0; they are never recorded.
         """
         if self.is_playing:
             self.time += self.speed * seconds
@@ -289,7 +289,7 @@ class Session:
         return self.recorder is not None
 
     def toggle_recording(self) -> Message:
-        """Record moved controls into the script, which plays from the present time, or end this.
+        """Begin to record moved controls while the script plays from the present time, or end this.
 
         Nothing is recorded while the script is paused or repeats a part.
         """
@@ -307,10 +307,10 @@ class Session:
         self.is_playing = False
         if recording is not None:
             self.script = recording
-            self._go_to(rounded(self.time))  # this is the end, if the recording is the last part
+            self._go_to(rounded(self.time))  # the end, if the recording is the script's last part
         self.values = self.scene.limits.pose(recorder.missed, self.values)
         self.is_following = False
-        missed = self.differing  # a pose by hand
+        missed = self.differing  # these controls stay as a pose by hand
         self.is_following = not missed
         self.pose_is_unsaved = bool(missed)
         controls = counted(len(recorder.samples), "control")
@@ -326,7 +326,7 @@ class Session:
         return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
     def replace_script(self, script: Script, file: ScriptFile) -> None:
-        """Replace the script by another one; a recording ends."""
+        """Replace the script by another script; a recording ends."""
         self.recorder = None
         self._is_touched = False
         self.script = script
@@ -343,7 +343,7 @@ class Work:
         self._session = session
 
     def open(self, script: Script) -> None:
-        """Show a pose, which a recording records, or begin a script, which ends a recording."""
+        """Show a pose, which a recording records, or show a script, which ends a recording."""
         if is_pose(script):
             pose = script.values(0.0, self._session.scene.limits)
             self._session.set_pose(pose, is_unsaved=False)

@@ -1,8 +1,8 @@
 """The script's sound in the window: it plays with the script, and sets the pace.
 
-The picture follows the sound: a device has its own clock, and the sound must not jump. So time
-passes a little faster or slower for the picture until both agree, and a stalled window skips the
-time that was heard meanwhile. The sound follows a jump of the user or of a loop.
+The picture follows the sound, because the sound device has its own clock and sound must not jump.
+So time passes slightly faster or slower for the picture until both agree. After a stall, the
+picture skips the time that was heard meanwhile. If the user or a loop jumps, the sound follows.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...sound.player import NoDeviceError, Player
 from .physics import MOST_STEPS, STEP
 from .session import Session
 
-LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more is a jump
+LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script in one frame; more is a jump
 
 
 class Soundtrack:
@@ -27,8 +27,8 @@ class Soundtrack:
         self._session = session
         self._file: Path | None = None
         self._player: Player | None = None
-        self._time = session.time  # in the last frame
-        self._was_playing = False  # in the last frame
+        self._time = session.time  # script's time in the last frame [s]
+        self._was_playing = False  # whether the script played in the last frame
         self.sound = None  # the script's sound; None without one
 
     def refresh(self) -> None:
@@ -56,7 +56,7 @@ class Soundtrack:
         return self._player is not None and self._player.is_heard
 
     def elapsed(self, seconds: float) -> float:
-        """Time that shall pass for the picture [s], after `seconds` of real time."""
+        """Return the time by which the picture advances [s], after `seconds` of real time."""
         session = self._session
         player = self._player
         if player is None or self.sound is None:
@@ -74,9 +74,9 @@ class Soundtrack:
         return seconds
 
     def _in_step(self, player: Player, seconds: float, went: float) -> float:
-        """Time that shall pass for the picture [s], so that it agrees with the sound.
+        """Return the time by which the picture advances [s], so that it agrees with the sound.
 
-        went: motion of the script in the last frame [s].
+        went: advance of the script in the last frame [s].
         """
         session = self._session
         has_jumped = not 0.0 <= went <= LONGEST_FRAME * session.speed
@@ -86,7 +86,7 @@ class Soundtrack:
             return seconds
         late = (player.position - session.time) / session.speed - seconds
         most_lag = 0.05  # [s] of lag before the picture skips
-        if late > most_lag and session.time < session.script.duration:  # a recording goes beyond
+        if late > most_lag and session.time < session.script.duration:  # unless a recording goes on
             session.time = min(session.time + late * session.speed, session.script.duration)
             self._time = session.time
             return seconds
@@ -94,7 +94,7 @@ class Soundtrack:
         return max(seconds + late * min(seconds / catch_up_seconds, 1.0), 0.0)
 
     def rest(self) -> None:
-        """Be silent, as long as the window waits."""
+        """Pause the sound while the window waits."""
         if self._player is not None:
             self._player.rest()
 

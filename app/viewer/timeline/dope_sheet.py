@@ -1,8 +1,8 @@
-"""The keys over time: a ruler for scrubbing; below it rows of keys, or values as curves.
+"""The keys over time: a ruler for scrubbing, and below it rows of keys, or values as curves.
 
-It works like every dope sheet: a click selects a key and goes there, a drag moves the selected
-keys, Shift adds, a drag over an empty place draws a box, the wheel zooms. Where keys are too dense
-to distinguish, a drag only moves selected keys, and a drag over others draws a box.
+The mouse works as in any dope sheet. A click selects a key and goes to its time, and Shift adds to
+the selection. A drag moves the selected keys, or draws a box from an empty place. The wheel zooms.
+Where keys are too dense to distinguish, only selected keys can be dragged.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .time_axis import TimeAxis
 class Drag:
     """The state of a drag, from press to release."""
 
-    doing: str  # keys, box, scrub, end, pan, slope
+    doing: str  # kind of drag: keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
     script: Script  # the script at the press
     selected: Places  # selected keys at the press
@@ -43,8 +43,8 @@ class Drag:
 class DopeSheet:
     """Draws ruler and rows, and executes the mouse's actions in them."""
 
-    ROW_HEIGHT = 1.35  # [em] of a row's height
-    RULER_HEIGHT = 1.45  # [em] of the ruler's height
+    ROW_HEIGHT = 1.35  # [em]
+    RULER_HEIGHT = 1.45  # [em]
     CLICK_DISTANCE = 4.0  # [window units]: a press with less motion is a click
 
     def __init__(
@@ -65,10 +65,10 @@ class DopeSheet:
         self._waveform = waveform
         self.graph = Graph(app.gui, selection, axis)
         self._drag: Drag | None = None
-        self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
+        self._grabbed = NOWHERE  # the keys under a press, all at one time
         self._all: tuple[Track, ...] = ()
-        self.rows: tuple[Track, ...] = ()  # the visible ones of these
-        self._known: Script | None = None  # the script of these tracks
+        self.rows: tuple[Track, ...] = ()  # the visible rows among all
+        self._known: Script | None = None  # the script of these rows
         self._are_dense: dict[str, bool] = {}  # by name: whether keys are too dense to distinguish
         self._bottom = 0.0  # bottom of the whole sheet [window units]
         self._tops = [0.0]  # tops of rows, and of one after the last [window units]
@@ -76,23 +76,23 @@ class DopeSheet:
         self._wants_menu = False
 
     def _is_open(self, name: str) -> bool:
-        """Whether the rows folded into this one are displayed; at first only one of many groups."""
-        most_curves = 24  # that are displayed at once by default
+        """Whether the rows folded into this row are displayed; at first only one of many groups."""
+        most_curves = 24  # if there are more, most groups are folded by default
         is_few = len(self._session.script.tracks) <= most_curves or name == self._all[1].name
         return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
     def height(self, room: float) -> float:
-        """The height of ruler and rows [window units], within the room."""
+        """Return the height of ruler and rows [window units], limited by `room`."""
         self._refresh()
-        most_rows = 6  # visible rows; the user scrolls to others
+        most_rows = 6  # the user scrolls to other rows
         rows = em(self.ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
-        graph_height = 14.0  # [em] of its default height
+        graph_height = 14.0  # [em] by default
         wanted = em(graph_height) if self.settings.shows_curves else rows
         above = em(self.RULER_HEIGHT) + self._waveform.height
         return above + max(min(wanted, room - above), em(self.ROW_HEIGHT))
 
     def _refresh(self) -> None:
-        """Bring rows and selection up to date with script and settings."""
+        """Update rows and selection from script and settings."""
         script = self._session.script
         if self._known is not script:
             self._known = script
@@ -102,7 +102,7 @@ class DopeSheet:
         self.graph.take(self.rows)
 
     def draw(self, height: float) -> None:
-        """Draw everything inside the timeline's window, with this height [window units]."""
+        """Draw everything inside the timeline's window. height: [window units]."""
         self._refresh()
         session = self._session
         axis = self.axis
@@ -110,9 +110,9 @@ class DopeSheet:
         place = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
         self._bottom = place.y + height
-        self._gutter = min(em(9.5), 0.2 * room.x)  # for the names of rows
+        self._gutter = min(em(9.5), 0.2 * room.x)  # names of rows
         inset = em(0.7)
-        values = em(2.2) if self.settings.shows_curves else 0.0  # the width of their labels
+        values = em(2.2) if self.settings.shows_curves else 0.0  # labels of values
         left = self._gutter + inset + values
         axis.place(place.x + left, room.x - left - inset - em(0.6))
         duration = session.script.duration
@@ -178,7 +178,7 @@ class DopeSheet:
         y = corner[1] + 0.5 * (em(self.ROW_HEIGHT) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
-        label = shortened(track.label, room, keeps_end=not track.is_sum)  # the end names the side
+        label = shortened(track.label, room, keeps_end=not track.is_sum)  # keeps the side's name
         is_curve = self.settings.shows_curves and track.control
         muted = self._gui.theme.muted
         ink = self.graph.colour(track) if is_curve else ink_of(muted)
@@ -222,7 +222,7 @@ class DopeSheet:
                     selection.places = track.places
             imgui.set_scroll_y(imgui.get_scroll_y() - em(self.ROW_HEIGHT) * io.mouse_wheel)
             return
-        key_reach = 0.5  # [em] around a key that count as the key
+        key_reach = 0.5  # [em] from a key within which the mouse is on it
         if self.settings.shows_curves:
             graph.handle = graph.handle_at(x, y)
             hit = None if graph.handle else graph.at(x, y)
@@ -250,7 +250,7 @@ class DopeSheet:
         return bisect.bisect_right(self._tops, y) - 1
 
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
-        """Begin a drag; selected: the keys to select from now on, None for the present ones."""
+        """Begin a drag. selected: the keys to select from now on, None to keep the selection."""
         places = self.selection.places if selected is None else selected
         self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
 
@@ -285,7 +285,7 @@ class DopeSheet:
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         zoom_per_notch = 0.8
         if sideways:
-            scroll_per_notch = 0.12  # of the visible time
+            scroll_per_notch = 0.12  # share of the visible time
             self.axis.scroll(-scroll_per_notch * self.axis.span * sideways)
         elif io.mouse_wheel:
             self.axis.zoom(zoom_per_notch**io.mouse_wheel, io.mouse_pos.x)
@@ -318,17 +318,17 @@ class DopeSheet:
             self._messages.attempt(lambda: self._release(io, drag))
 
     def _snapped(self, time: float, io: Any) -> float:
-        """The time of the nearest frame, or with Ctrl the exact time [s]."""
+        """Return the time of the nearest frame, or with Ctrl the exact time [s]."""
         return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
         right = io.mouse_pos.x - drag.began[0]
         down = io.mouse_pos.y - drag.began[1]
-        if not io.key_ctrl:  # a frame steps in both directions
+        if not io.key_ctrl:  # ignores small motion along either axis
             right, down = (0.0 if abs(way) < self.CLICK_DISTANCE else way for way in (right, down))
         time = self._grabbed.first
         target = time + self.axis.seconds(right)
-        target = min(max(target, 0.0), self.axis.end)  # further right is invisible
+        target = min(max(target, 0.0), self.axis.end)  # later times are invisible
         offset = self._snapped(target, io) - time if right else 0.0
         script, places = keyframes.moved(drag.script, drag.selected, offset)
         line = f"{time + offset:.2f} s"
@@ -365,7 +365,7 @@ class DopeSheet:
         self.selection.places = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
-        """End the drag at the release; return a message about it."""
+        """End the drag at the release; return a message about the change."""
         session = self._session
         line = None
         if drag.doing == "keys" and drag.has_moved:

@@ -1,9 +1,9 @@
 """Keys as curves: the value of each control over time, as the script plays it.
 
-A curve belongs to a track, or to one control of the poses: a key of a pose that is dragged up
-changes this value of the pose. The way to a selected key has two handles, at the control points of
-a Bezier curve, which can be dragged up and down. dope_sheet.py has the mouse's actions, as for rows
-of keys.
+A curve belongs to a track, or to one control of the poses; a drag of its key up or down changes
+this control in the pose. The segment that ends at a selected key has two handles, which are the
+control points of a Bezier curve; they can be dragged up and down. dope_sheet.py carries out the
+actions of the mouse.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (
 
 
 class Hit(NamedTuple):
-    """The curve at a place in the graph, and its key if there is one."""
+    """The curve at a place in the graph, and its key there if any."""
 
     curve: Track
     value: float
@@ -34,20 +34,20 @@ class Hit(NamedTuple):
 
 
 class Handle(NamedTuple):
-    """A control point of the way to a key, a third from one end, which sets the slope there."""
+    """A control point of the segment that ends at a key; it sets the slope at one end."""
 
     key: Places
-    number: int  # 0: at the start of the way, 1: at its end
-    slopes: tuple[float, float]  # in mean speeds
-    ends: tuple[float, float]  # the values at this end and at the other end of the way
+    number: int  # 0: at the start of the segment, 1: at its end
+    slopes: tuple[float, float]  # at both ends, relative to the mean slope
+    ends: tuple[float, float]  # the values at this end and at the other end of the segment
     place: Point
-    root: Point  # place of its key
+    root: Point  # place of this end
 
 
 class Graph:
-    """Draws curves between a time axis and one of values, and finds keys and curves by place."""
+    """Draws curves over a time axis and a value axis, and finds keys and curves by place."""
 
-    MOUSE_REACH = 0.55  # [em] around a key or curve that count as it
+    MOUSE_REACH = 0.55  # [em] from a key or curve within which the mouse is on it
     KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
     def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
@@ -57,17 +57,17 @@ class Graph:
         self.curves: list[Track] = []
         self.held: Hit | None = None  # the curve or key that the mouse was pressed on
         self.handle: Handle | None = None  # the handle that the mouse was pressed on
-        self._low = 0.0  # value
-        self._high = 1.0  # value
-        self._bottom = 0.0  # height of the low value
-        self.slope = -1.0  # distance of 1 down from 0 [window units]
+        self._low = 0.0  # lowest visible value
+        self._high = 1.0  # highest visible value
+        self._bottom = 0.0  # y of the lowest value [window units]
+        self.slope = -1.0  # change of y for a value of 1 [window units]
 
     def take(self, rows: Iterable[Track]) -> None:
         """Display the curves of these rows; those with selected keys are in front."""
         self.curves = sorted((row for row in rows if row.control), key=self._is_selected)
 
     def colour(self, curve: Track, opacity: float = 1.0) -> int:
-        """The colour of a curve and its name; by the golden ratio neighbours differ most."""
+        """Return the colour of a curve; steps of the golden ratio separate neighbours."""
         light = (0.55, 0.95) if self._gui.theme.is_dark else (0.9, 0.6)
         hue = (0.58 + 0.618034 * curve.number) % 1.0
         return ink_of(imgui.color_convert_hsv_to_rgb(hue, *light), opacity)
@@ -76,13 +76,13 @@ class Graph:
         return curve.track in self._selection.places.times
 
     def y(self, value: Any) -> Any:
-        """Place of a value, or of each value of an array [window units]."""
+        """Return the y of a value, or of each value of an array [window units]."""
         return self._bottom + self.slope * (value - self._low)
 
     # Places of keys and curves
 
     def at(self, x: float, y: float) -> Hit | None:
-        """The key at a place, or else the curve; where keys are too dense, only selected keys."""
+        """Return the key at a place, or else the curve; dense keys count only if selected."""
         axis = self._axis
         reach = em(self.MOUSE_REACH)
         hits = list[tuple[float, Hit]]()
@@ -103,7 +103,7 @@ class Graph:
         return hit if distance < 2.0 * reach else None
 
     def handles(self) -> Iterator[Handle]:
-        """The handles of the ways to selected keys, if there is room."""
+        """Yield the handles of segments that end at selected keys, where there is room."""
         axis = self._axis
         for curve in self.curves:
             channel = curve.channel
@@ -122,7 +122,7 @@ class Graph:
                 (y, there) = self.y(values).tolist()
                 reach = em(self.MOUSE_REACH)
                 if easing.is_held or right - x < 3.0 * reach or abs(there - y) < reach:
-                    continue  # held, or no room
+                    continue  # no easing, or no room
                 key = Places.of(KeyPlace(curve.track, float(times[1])))
                 across = (right - x) / 3.0
                 rise = (there - y) / 3.0
@@ -133,20 +133,20 @@ class Graph:
                 yield Handle(key, 1, slopes, (high, low), last, (right, there))
 
     def handle_at(self, x: float, y: float) -> Handle | None:
-        """The handle there, if there is one."""
+        """Return the handle at a place, or None."""
         away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
         distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
         return handle if distance < em(self.MOUSE_REACH) else None
 
     def bent(self, handle: Handle, y: float) -> str:
-        """The easing of the way after its handle is dragged to a height."""
+        """Return the easing of a segment after its handle is dragged to a height."""
         slopes = list(handle.slopes)
         (own, other) = map(self.y, handle.ends)
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
         return free_easing(*slopes)
 
     def inside(self, first: Point, last: Point) -> Places:
-        """The keys in a box."""
+        """Return the keys in a box."""
         (begin, end), (top, bottom) = (sorted(each) for each in zip(first, last, strict=True))
         places = NOWHERE
         for curve in self.curves:
@@ -156,19 +156,19 @@ class Graph:
         return places.between(self._axis.time(begin), self._axis.time(end))
 
     def _is_dense(self, curve: Track) -> bool:
-        """Whether its visible keys are too dense to distinguish."""
+        """Whether the visible keys of a curve are too dense to distinguish."""
         axis = self._axis
         times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
         return bool(1.5 * em(self.KEY_RADIUS) * count > axis.x(axis.end) - axis.x(axis.start))
 
-    # How it looks
+    # Drawing
 
     def draw(self, edges: Point, duration: float, *, is_held: bool) -> None:
-        """Draw all of it, between an upper and a lower edge [window units].
+        """Draw the graph between an upper and a lower edge [window units].
 
-        duration: that of the script [s]. is_held: whether the mouse holds a curve, so that the axis
-        of values stays.
+        duration: duration of the script [s]. is_held: whether the mouse holds a curve, so that the
+        value axis stays.
         """
         axis = self._axis
         lines = imgui.get_window_draw_list()
@@ -179,7 +179,7 @@ class Graph:
         self._draw_ground((left, edges[0]), (right, edges[1]), axis.x(duration))
         self._draw_values(left, right)
         lines.push_clip_rect((left, edges[0]), (right, edges[1]), True)
-        most_points = 4000  # of all curves, in columns
+        most_points = 4000  # of all curves together
         columns = round(min(0.5 * (right - left), most_points / (len(self.curves) + 1)))
         for curve in self.curves:
             is_front = self._is_selected(curve) or not self._is_selected(self.curves[-1])
@@ -191,7 +191,7 @@ class Graph:
         lines.pop_clip_rect()
 
     def _fit(self, edges: Point) -> None:
-        """Let the axis of values reach from edge to edge, with all values unless it was zoomed."""
+        """Fit the value axis between the edges, so that all values are visible."""
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
         self._low = min(ends)
         self._high = max(ends)
@@ -201,7 +201,7 @@ class Graph:
         self.slope = -height / (self._high - self._low)
 
     def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
-        """Draw the ground of the curves between two corners, darker up to the script's end."""
+        """Draw the background between two corners, stronger up to the script's end."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
         end = min(max(script_end, low[0]), high[0])
@@ -225,7 +225,7 @@ class Graph:
             lines.add_text(place, ink_of(theme.muted), label)
 
     def _draw_handles(self) -> None:
-        """Draw the handles of the ways to selected keys, each with a line to its key."""
+        """Draw the handles, each with a line to its end of the segment."""
         accent = ink_of(self._gui.theme.accent)
         lines = imgui.get_window_draw_list()
         for handle in self.handles():
@@ -233,7 +233,7 @@ class Graph:
             lines.add_circle_filled(handle.place, em(0.8 * self.KEY_RADIUS), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
-        """Draw the visible keys, and the ways to selected keys."""
+        """Draw the visible keys, and the segments that end at selected keys."""
         axis = self._axis
         channel = curve.channel
         accent = ink_of(self._gui.theme.accent)
@@ -246,7 +246,7 @@ class Graph:
         is_dense = self._is_dense(curve)
         chosen = times[are_chosen]
         befores = channel.times[np.maximum(np.searchsorted(channel.times, chosen) - 1, 0)]
-        if is_dense:  # all ways at once
+        if is_dense:  # all segments as one line
             befores = befores[:1]
             chosen = chosen[-1:]
         for before, time in zip(befores.tolist(), chosen.tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Drawings of ruler, rows and keys of the timeline; dope_sheet.py has their behaviour."""
+"""Draws ruler, rows and keys of the timeline; dope_sheet.py carries out the mouse's actions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def draw_ruler(
 ) -> None:
     """Draw ticks with seconds, the script's end, and a handle for scrubbing at the present time.
 
-    time, duration: [s]. edges: the upper and the lower one [window units].
+    time, duration: [s]. edges: the upper and the lower edge [window units].
     """
     lines = imgui.get_window_draw_list()
     (top, bottom) = edges
@@ -45,7 +45,7 @@ def draw_ruler(
     if end <= axis.x(axis.end):
         tip = end + em(FLAG_SIZE), bottom - 0.5 * em(FLAG_SIZE)
         lines.add_triangle_filled((end, bottom - em(FLAG_SIZE)), tip, (end, bottom), ink)
-    if axis.start <= time <= axis.end:  # below the numbers
+    if axis.start <= time <= axis.end:  # the handle is below the numbers
         x = axis.x(time)
         half = em(0.4)
         left = (x - half, bottom - 1.3 * half)
@@ -54,7 +54,7 @@ def draw_ruler(
 
 
 def number_of(time: float) -> str:
-    """The shortest text for seconds, with minutes if there are any."""
+    """Return the shortest text for seconds, with minutes if there are any."""
     if time < 60.0:
         return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
     minutes, seconds = divmod(round(time, 2), 60.0)
@@ -84,12 +84,12 @@ def draw_label(
 
 
 class TrackPainter:
-    """Draws tracks along an axis, with selected keys."""
+    """Draws rows of keys along an axis, with the selected keys highlighted."""
 
     KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
 
     def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
-        """duration: that of the script [s]."""
+        """duration: duration of the script [s]."""
         self._theme = theme
         self._axis = axis
         self._selected = selected
@@ -99,11 +99,12 @@ class TrackPainter:
         margin = axis.seconds(em(0.5))
         least_key_distance = 2.0  # [window units]: nearer keys are drawn as one
         count = max(round((self._high - self._low) / least_key_distance), 2)
-        self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
+        # Edges of columns [s].
+        self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
     def draw(self, track: Track, top: float, unit: float) -> bool:
-        """Draw a row of `unit` times its height: its ground, keys, names.
+        """Draw the background, keys and names of a row; `unit` is the height of an ordinary row.
 
         Returns whether the visible keys are too dense to be drawn one by one.
         """
@@ -130,7 +131,7 @@ class TrackPainter:
         return self._draw_keys(track, middle)
 
     def _draw_keys(self, track: Track, middle: float) -> bool:
-        """Draw the visible keys, selected ones on top; dense keys do not hide curves."""
+        """Draw the visible keys, selected keys on top; return whether the keys are too dense."""
         size = em(self.KEY_RADIUS if track.is_whole else 0.8 * self.KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
@@ -138,7 +139,7 @@ class TrackPainter:
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        most_covered_share = 0.5  # of a row under keys that are drawn one by one
+        most_covered_share = 0.5  # of the row's width: with more, keys are too dense
         is_dense = len(marks) * 2.0 * size > most_covered_share * (self._high - self._low)
         seen = marks[:0] if is_dense and len(track.channel) else marks
         accent = ink_of(self._theme.accent)
@@ -152,7 +153,7 @@ class TrackPainter:
         axis = self._axis
         ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
-        least_name_width = 2.4  # [em] of a pose's name: less is unreadable
+        least_name_width = 2.4  # [em]: a narrower name is unreadable
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
                 x = axis.x(time) - em(self.KEY_RADIUS)
@@ -178,7 +179,7 @@ peaks_of = functools.lru_cache(maxsize=1)(Peaks)
 
 
 class Waveform:
-    """Draws the sound of the script; without a sound it has no height."""
+    """Draws the waveform of the script's sound; without a sound its height is 0."""
 
     def __init__(self, gui: Gui, soundtrack: Soundtrack, axis: TimeAxis) -> None:
         self._gui = gui
@@ -197,9 +198,9 @@ class Waveform:
         return sound.duration if sound is not None else 0.0
 
     def draw(self, time: float, duration: float, corner: Point) -> None:
-        """Draw it at its upper left corner; after the script's end it is faint.
+        """Draw the waveform from its upper left corner; it is faint after the script's end.
 
-        time: the present one [s]. duration: that of the script [s].
+        time: the present time [s]. duration: duration of the script [s].
         """
         sound = self._soundtrack.sound
         axis = self._axis
@@ -221,7 +222,7 @@ class Waveform:
         inside = ink_of(theme.muted)
         outside = ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
-        least_amplitude = 0.5  # [window units] from the middle: silence appears as a thin line
+        least_amplitude = 0.5  # [window units]: silence is a thin line
         uppers = (middle - least_amplitude - reach * high).tolist()
         lowers = (middle + least_amplitude - reach * low).tolist()
         for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):

@@ -22,7 +22,7 @@ from ..session.session import Session
 class Track:
     """One row: the keys of the poses, of several tracks, or of one control."""
 
-    name: str  # no other row has it
+    name: str  # unique among all rows
     label: str
     places: Places
     channel: Channel = field(default_factory=partial(Channel, (), ()))  # keys of one control
@@ -30,18 +30,18 @@ class Track:
     track: str = ""  # the name of the track that has its keys
     parents: tuple[str, ...] = ()  # the names of the rows into which it is folded
     names: tuple[tuple[float, str], ...] = ()  # names of poses, by time [s]
-    is_whole: bool = False  # whether keys are poses, of all controls
+    is_whole: bool = False  # whether its keys are whole poses
     is_sum: bool = False  # whether it sums the rows below it, which may be folded
-    number: int = 0  # among all rows
+    number: int = 0  # number of the row among all rows
 
     @property
     def height(self) -> float:
-        """The height of the row, in ordinary rows; the row of poses has room for names."""
+        """The height relative to an ordinary row; the row of poses has room for names."""
         return 1.75 if self.is_whole else 1.0
 
 
 def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Track, ...]:
-    """The poses and each control that they name, then the tracks by the groups of controls."""
+    """Return rows for the poses and their controls, then for the tracks by groups of controls."""
     rows = list[Track]()
     times = places_of(script).times
     if script.poses or not script.tracks:
@@ -69,25 +69,25 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
         for name in inside:
             alone = Places({name: times[name]})
             channel = script.tracks[name]
-            sign = "+ " if name in script.posed_names else ""  # it adds to the poses
+            sign = "+ " if name in script.posed_names else ""  # the track adds to the poses
             label = f"{sign}{called(name)}"
             rows.append(Track(f"track {name}", label, alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
 
 
 def movers_of(script: Script, name: str) -> str:
-    """Words for the parts of a script that move a control; "" for none."""
+    """Name the parts of a script that move a control; "" for none."""
     parts = {"the poses": name in script.posed_names, "a track": name in script.tracks}
     return " and ".join(part for part, is_there in parts.items() if is_there)
 
 
 def listed(names: Collection[str]) -> str:
-    """One control by its name in words, or the number of several."""
+    """Return the name of one control in words, or the number of several controls."""
     return called(min(names)) if len(names) == 1 else counted(len(names), "control")
 
 
 class KeySelection:
-    """Some keys of a session's script; menus, the keyboard and the timeline share it."""
+    """The selected keys of a session's script; menus, keyboard and timeline share them."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

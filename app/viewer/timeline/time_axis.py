@@ -1,4 +1,4 @@
-"""The part of the script that the timeline displays, and the places of times in it."""
+"""The part of the script that the timeline displays; converts between times and places."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Number = TypeVar("Number", float, Floats64)
 
 
 class TimeAxis:
-    """The visible part: `span` seconds from `start` on; by default the whole script."""
+    """The visible part: `span` seconds of the script from `start` on; by default all."""
 
     LEAST_SPAN = 8.0 * FRAME  # [s] at the closest zoom
 
@@ -36,7 +36,7 @@ class TimeAxis:
 
     def fit(self, end: float) -> None:
         """Keep the visible part inside a script that ends at `end` [s]."""
-        margin_factor = 1.06  # of the script: room after its end, to drag keys there
+        margin_factor = 1.06  # room after the script's end, to drag keys there
         whole = max(end * margin_factor, self.LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
@@ -50,15 +50,15 @@ class TimeAxis:
         return self.start + self.span
 
     def x(self, time: Number) -> Number:
-        """Place of a time, or of each time of an array [window units]."""
+        """Return the x of a time, or of each time of an array [window units]."""
         return self._left + self._width * (time - self.start) / self.span
 
     def time(self, x: float) -> float:
-        """The time at a place [s], 0 or more."""
+        """Return the time at x [s], 0 or more."""
         return max(self.start + self.seconds(x - self._left), 0.0)
 
     def seconds(self, distance: float) -> float:
-        """Duration of a distance [window units]."""
+        """Convert a distance [window units] to a duration [s]."""
         return distance / self._width * self.span
 
     def zoom(self, factor: float, x: float) -> None:
@@ -69,7 +69,7 @@ class TimeAxis:
         self.start = fixed - self.seconds(x - self._left)
 
     def scroll(self, seconds: float) -> None:
-        """Show a later part, by `seconds`."""
+        """Show a part that begins `seconds` later."""
         self.start += seconds
 
     def follow(self, time: float) -> None:
@@ -78,13 +78,13 @@ class TimeAxis:
             self.start = time - 0.1 * self.span
 
     def ticks(self, label_width: float) -> list[tuple[float, bool]]:
-        """The times of visible marks [s], and whether each has room for a label."""
+        """Return the times of visible ticks [s], and whether each has room for a label."""
         wide = (step for step in TICK_STEPS[1:] if step >= self.seconds(label_width))
         labelled = next(wide, TICK_STEPS[-1])
-        least_tick_share = 0.12  # of the room for a label
+        least_tick_share = 0.12  # distance of ticks, relative to a label's width
         least = self.seconds(least_tick_share * label_width)
         parts = ((s, labelled / s) for s in TICK_STEPS if least <= s < labelled)
-        finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # none is left over
+        finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # divides evenly
         marked = finer[0] if finer else labelled
         count = round(labelled / marked)
         first, last = (int(t / marked) for t in (self.start, self.end))

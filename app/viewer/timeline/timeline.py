@@ -35,7 +35,7 @@ class Timeline:
     def __init__(
         self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
     ) -> None:
-        """commands: must include those of the buttons."""
+        """commands: the window's commands, which include those of the buttons."""
         self._gui = app.gui
         self._session = app.session
         self._messages = app.messages
@@ -96,9 +96,10 @@ class Timeline:
         hint("speed of the script")
 
     def _draw_status(self, differing: int) -> None:
-        """Draw the time, then a recording, the number of differing controls, or the script.
+        """Draw the time, and a recording, the number of differing controls, or the script.
 
-        If there is no room for both, news comes first, and the script's name is left out.
+        If there is no room for both, a recording or a number replaces the time, and the script's
+        name is left out.
         """
         session = self._session
         theme = self._gui.theme

@@ -33,7 +33,7 @@ from . import menus
 class FaceMode:
     """The face of the session, moved by physics; see `Mode`."""
 
-    draws_over_picture = False  # a drag in the scene moves no slider
+    draws_over_picture = False  # no marks lie over the face
 
     def __init__(self, context: ApplicationContext, file_drop: FileDrop, close: Task) -> None:
         """close: the command that closes the window."""
@@ -55,7 +55,7 @@ class FaceMode:
         self.mouse = Mouse(self.view, context.stage, context.messages, grab, self.select_muscle)
 
     def _commands(self, close: Task) -> tuple[Command, ...]:
-        """All commands, each with its parts."""
+        """Return all commands of this mode."""
         context = self._context
         session = context.session
         settings = context.settings
@@ -91,7 +91,7 @@ class FaceMode:
             "Mechanism": mechanism.draw,
             "Scene": scene_panel.draw,
         }
-        if scene.face is not None:  # a live face can move it
+        if scene.face is not None:  # a plane has no live face
             tabs["Live"] = live.draw
         self.layout = Layout(context, menu_bar, tabs, self.timeline)
 
@@ -107,7 +107,7 @@ class FaceMode:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether all is at rest, and will stay so."""
+        """Whether everything is at rest, and stays at rest without an event."""
         return (
             self.physics.is_at_rest
             and not self.life.is_on
@@ -157,13 +157,13 @@ class FaceMode:
         return self._file_drop.open(paths)
 
     def leave(self, then: Task) -> Message:
-        """Run `then`: the script is kept, and the closing window asks about it."""
+        """Run `then`; the session keeps the script, and the closing window asks about it."""
         return then()
 
-    # The window suspends the face, and resumes it
+    # The window pauses the face during a marking
 
     def set_aside(self) -> None:
-        """Stand still, while a mesh is marked in the window."""
+        """Pause the script and its sound while a mesh is marked in the window."""
         self.mouse.forget()
         self._context.session.is_playing = False
         self.soundtrack.rest()
@@ -174,7 +174,7 @@ class FaceMode:
         self.painter.forget()
 
     def begin_anew(self) -> None:
-        """Begin with another scene, seen as a whole."""
+        """Begin with another scene; the camera shows all of it."""
         self.view.fit_scene()
         self.physics.begin_anew()
         self.resume()

@@ -1,6 +1,6 @@
 """The commands of all menus and keys, as data; one function for each menu.
 
-Menus, the keyboard and buttons are all made from these tables.
+Menus, keys and buttons are all made from these tables.
 """
 
 from __future__ import annotations
@@ -60,18 +60,18 @@ def file_menu(
     settings: Settings,
     close: Task,
 ) -> Menu:
-    """Commands for files, and to end the program. exports: the commands under Export."""
+    """Return commands for files, and to quit. exports: the commands under Export."""
     command = partial(Command, "File")
 
     def recent() -> Iterator[Command]:
-        """The files that were opened or saved lately, to be opened again."""
+        """Yield commands that open a recent file again."""
         for paths in (each.split("\n") for each in settings.recent):
             names = " + ".join(Path(path).name for path in paths)
             label = as_text(f"{names}   {Path(paths[0]).parent}").replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
     def example() -> Iterator[Command]:
-        """The scripts that are included."""
+        """Yield commands that open an included script."""
         for path in examples(exporter.session.script.scene):
             yield command(readable(path.stem), "", partial(file_drop.open, [str(path)]))
 
@@ -96,7 +96,7 @@ def file_menu(
 
 
 def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
-    """Exports of a face for other programs, a submenu of File."""
+    """Return the commands that export a face for other programs, a submenu of File."""
     return (
         Command(
             "File",
@@ -118,7 +118,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
 
 
 def edit_menu(session: Session) -> Menu:
-    """Commands for undo, and for whole faces."""
+    """Return commands for undo, and for whole faces."""
     command = partial(Command, "Edit")
     redo = partial(command, can_run=lambda: session.history.can_redo)
     of_sides = partial(command, can_run=lambda: session.scene.face is not None)
@@ -133,7 +133,7 @@ def edit_menu(session: Session) -> Menu:
 
 
 def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu:
-    """Commands to play, to record, and to move through the script."""
+    """Return commands to play, to record, and to move through the script."""
     command = partial(Command, "Time")
     return (
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
@@ -157,7 +157,7 @@ def switch_of(
     *,
     begins_section: bool = False,
 ) -> Command:
-    """A command that switches a field of a part between two values."""
+    """Return a command that switches a field of an object between two values."""
 
     def is_on() -> bool:
         return bool(getattr(part(), field) == on)
@@ -169,7 +169,7 @@ def switch_of(
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
-    """Commands for the selected keys of the timeline."""
+    """Return commands for the selected keys of the timeline."""
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
@@ -191,7 +191,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 
 
 def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
-    """Commands for the scene's display, and the panels around it."""
+    """Return commands for the scene's display, and the panels around it."""
 
     def has_face() -> bool:
         """Whether the scene is a face: a plane has no texture, muscles and life."""
@@ -238,7 +238,7 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
 
 
 def expression_keys(session: Session) -> Menu:
-    """Keys 1 to 9 show the first expressions of the scene, which are bars of a panel."""
+    """Return commands without a menu: keys 1 to 9 show the first expressions of the scene."""
     return tuple(
         Command("", readable(name), str(number), partial(session.toggle_alone, name))
         for number, name in enumerate(session.scene.expressions[:9], start=1)
@@ -246,7 +246,7 @@ def expression_keys(session: Session) -> Menu:
 
 
 def live_menu(live: LiveCommands, session: Session) -> Menu:
-    """Commands for a live face; no menu for a scene without a face."""
+    """Return commands for a live face; none for a scene without a face."""
     command = partial(Command, "Live")
     if session.scene.face is None:
         return ()
@@ -257,7 +257,7 @@ def live_menu(live: LiveCommands, session: Session) -> Menu:
 
 
 def help_menu(manual: Manual, commands: Callable[[], Menu]) -> Menu:
-    """The manual, the program, its citation. commands: all of the window."""
+    """Return commands for manual, version and citation. commands: all of the window."""
     command = partial(Command, "Help")
     return (
         command("Manual", "F1", manual.read),
@@ -268,7 +268,7 @@ def help_menu(manual: Manual, commands: Callable[[], Menu]) -> Menu:
 
 
 def show_keys(manual: Manual, commands: Menu) -> None:
-    """Show the keys of all commands, by their menus, and the actions of the mouse."""
+    """Show the keys of all commands by menu, and the actions of the mouse."""
     gestures = (
         ("left button on the skin", "pull it into a pose; with Ctrl it swings back"),
         ("click on the skin", "show the muscle in the panel"),
@@ -291,7 +291,7 @@ def show_keys(manual: Manual, commands: Menu) -> None:
 
 
 def about() -> Message:
-    """The program in a line."""
+    """Return a line about the program."""
     return (
         f"Risorius {__version__}, MIT licence. Muscles and springs move the face; its mesh is "
         "refined after Kähler, Haber, Seidel 2003. [Manual] opens the manual."

@@ -28,11 +28,11 @@ class Mode(Protocol):
 
     @property
     def painter(self) -> Painter:
-        """Keeps the picture up to date."""
+        """The painter, which keeps the picture up to date."""
 
     @property
     def mouse(self) -> CameraMouse:
-        """Carries out actions of the mouse in the picture."""
+        """The mouse in the picture, with its actions."""
 
     @property
     def commands(self) -> Sequence[Command]:
@@ -40,11 +40,11 @@ class Mode(Protocol):
 
     @property
     def draws_over_picture(self) -> bool:
-        """Whether panels draw over the picture, and so change whenever it does."""
+        """Whether panels draw over the picture, and so must be drawn after each change of it."""
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether all is at rest, and will stay so."""
+        """Whether everything is at rest, and stays at rest without an event."""
 
     @property
     def is_left_alone(self) -> bool:
@@ -55,7 +55,7 @@ class Mode(Protocol):
         """Whether a panel has news that did not come from the user's input."""
 
     def paint(self, elapsed: float) -> bool:
-        """Let seconds pass, and draw the picture; return whether it has changed."""
+        """Let `elapsed` seconds pass, and draw the picture; return whether it has changed."""
 
     def draw_panels(self) -> None:
         """Draw the panels, and give the picture its place."""

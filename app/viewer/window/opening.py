@@ -1,4 +1,4 @@
-"""The opening of the window: the scene is made behind a splash screen, then the shared parts."""
+"""Opens the window: makes the scene behind a splash screen, and then the shared parts."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def open_window(
 ) -> tuple[ApplicationContext, contextlib.ExitStack, str]:
     """Make the scene, and the shared parts in the open window.
 
-    display: None takes the remembered one. Returns the parts, a stack that closes them with the
+    display: None for the remembered display. Returns the parts, a stack that closes them and the
     window, and a complaint about remembered settings, or "". Raises UserError if script or display
-    do not fit the scene; the window is then closed.
+    does not fit the scene; the window is then closed.
     """
     settings = splash.settings
     complaint = splash.complaint
@@ -45,7 +45,7 @@ def open_window(
 
 
 def without_refused_options(display: Display, scene: Scene) -> str:
-    """Refine by the look alone if a refiner refuses the scene; return the reason, or ""."""
+    """Refine by the look alone if the scene does not fit the display; return the reason, or ""."""
     try:
         _refine_once(scene, display)
     except UserError as error:
@@ -55,7 +55,7 @@ def without_refused_options(display: Display, scene: Scene) -> str:
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
-    """The scene at rest; the code of its first frames has run once, so it is compiled."""
+    """Return the scene at rest, after a run of the code that its first frames need compiled."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     scene.step(1.0 / 60.0)

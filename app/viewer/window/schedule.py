@@ -14,7 +14,7 @@ from .mode import Mode
 
 
 class Schedule:
-    """Keeps the time of frames; an idle window sleeps until an event."""
+    """Measures the times of frames, and lets an idle window sleep until an event."""
 
     FRAMES_AFTER_EVENT = 3  # the GUI responds to an event within this many frames
 
@@ -25,13 +25,13 @@ class Schedule:
         mode: Callable[[], Mode],
         due_in: Callable[[], float],
     ) -> None:
-        """mode: the window's present one. due_in: [s] until unsaved work is copied next."""
+        """mode: returns the present mode. due_in: returns the time to the next recovery [s]."""
         self._context = context
         self._file_drop = file_drop
         self._mode = mode
         self._due_in = due_in
-        self._begun = time.perf_counter()  # begin of the present frame [s]
-        self._awake = self.FRAMES_AFTER_EVENT  # number of frames to draw in any case
+        self._begun = time.perf_counter()  # start time of the present frame [s]
+        self._awake = self.FRAMES_AFTER_EVENT  # number of frames to draw because of an event
 
     def restart(self) -> None:
         """Forget the time that has passed since the last frame."""
@@ -48,7 +48,7 @@ class Schedule:
         return self._begun - last
 
     def end_frame(self) -> None:
-        """Note that a frame is drawn."""
+        """Count down the frames to draw."""
         self._awake = max(self._awake - 1, 0)
 
     @property
@@ -63,7 +63,7 @@ class Schedule:
 
     @property
     def is_idle(self) -> bool:
-        """Whether all is at rest, and will stay so."""
+        """Whether everything is at rest, and stays at rest without an event."""
         mode = self._mode()
         return (
             not self.is_awake
@@ -85,9 +85,8 @@ class Schedule:
     def pause(self) -> None:
         """Sleep while nothing happens, and between frames of idle life.
 
-        Idle life leaves at least half of the time for sleep, however long a frame takes. After a
-        live face's frame, wait for the next packet: a frame that begins with its packet shows it at
-        once.
+        During idle life the window sleeps at least half of the time. During a live face, a frame
+        waits for the next packet, which it then shows at once.
         """
         gui = self._context.gui
         live = self._context.live
@@ -96,27 +95,27 @@ class Schedule:
             self.sleep()
         elif self.is_left_alone:
             spent = self.spent
-            gui.look(max(life_wait - spent, spent))
+            gui.read_events(max(life_wait - spent, spent))
         elif live.is_receiving and not live.has_frame:
-            gui.look(PACKET_WAIT)
+            gui.read_events(PACKET_WAIT)
 
     def sleep(self) -> None:
         """Sleep until an event comes, or for a while; the clock stops meanwhile."""
         context = self._context
         is_watching = (
             context.files.is_waiting
-            or imgui.get_io().want_text_input  # a cursor blinks
+            or imgui.get_io().want_text_input  # for the blinking cursor
             or self._file_drop.making is not None
             or context.exporter.job is not None
         )
         idle_wait = 2.0  # [s] between two frames while nothing happens
-        watchful_wait = 0.1  # [s] the same while a file dialog is open, or words are typed
+        watchful_wait = 0.1  # [s] the same during a dialog, typing or background work
         patience = watchful_wait if is_watching else idle_wait
         due_in = min(self._due_in(), context.live.due_in())
         patience = min(patience, max(due_in, 0.0))
         self._mode().rest()
         self.restart()
-        context.gui.look(patience)
+        context.gui.read_events(patience)
         is_woken = self.spent < patience
         self.restart()
         if is_woken and not context.live.has_frame:

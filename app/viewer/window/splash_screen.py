@@ -1,4 +1,4 @@
-"""The opening window: a line with the progress, while a thread makes the face."""
+"""The window during its opening: a line with the progress, while a thread makes the face."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ Result = TypeVar("Result")
 
 
 class SplashScreen(logging.Handler):
-    """An open, still empty window; a context manager, which closes it.
+    """An open window that is still empty; a context manager, which closes it.
 
-    settings, complaint: those remembered, and a line that names the unusable ones.
+    settings: the remembered settings. complaint: a line that names unusable settings, or "".
     """
 
     LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 
     def __init__(self, size: tuple[int, int] | None, path: Path | None) -> None:
-        """size: None for the remembered one, or else one for the screen. path: of the settings."""
+        """size: None for the remembered or the screen's size. path: file of the settings."""
         super().__init__()
         self.settings = Settings()
         self.complaint = ""
@@ -41,7 +41,7 @@ class SplashScreen(logging.Handler):
         known = size or self.settings.size
         self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
-        most = 2560, 1440  # [units of a screen of ordinary density], if it has room
+        most = 2560, 1440  # [units of a screen of ordinary density]
         self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
         if known is None:
             self.settings.zoom = zoom_for(self.surface)
@@ -49,7 +49,7 @@ class SplashScreen(logging.Handler):
         self._show()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Show that code is compiled, as the record reports."""
+        """Show that code is being compiled; the log has a record for each function."""
         self._text = COMPILING_TEXT
 
     def __enter__(self) -> SplashScreen:
@@ -81,14 +81,14 @@ class SplashScreen(logging.Handler):
 
 
 def zoom_for(surface: render.WindowSurface) -> float:
-    """Factor on the size of words, so that they are readable on a large screen."""
+    """Return the factor on the size of words that makes them readable on a large screen."""
     height = surface.frame_size[1] / surface.pixel_scale
     usual_height = 1080.0  # [units of a screen of ordinary density]
     return min(max(height / usual_height, 1.0), 1.5)
 
 
 def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> render.Image:
-    """A line of text in the middle of the window's frame."""
+    """Return an image with a line of text in its middle."""
     shade = tuple(round(255.0 * part) for part in theme.panel)
     page = PIL.Image.new("RGB", size, shade)
     font = ImageFont.truetype(FONT, letter) if FONT.exists() else ImageFont.load_default(letter)

@@ -1,4 +1,4 @@
-"""The window: it joins the two modes, runs one pass of its loop at a time, and closes.
+"""The window: joins the two modes, runs the loop, and closes.
 
 Physics has its own steps, independent of frames (physics.py). The scene is drawn only when it has
 changed; on a slow machine, a moving scene has less detail (stage.py), and its panels are drawn less
@@ -59,11 +59,11 @@ class Viewer:
     ) -> None:
         """Open the window; nothing moves yet.
 
-        head: a user's own, None for the built-in one. size, display: None takes the remembered
-            ones.
+        head: the user's head, None for the built-in head. size, display: None for the remembered
+            values.
         splash: the window, if it is already open.
-        settings_path: that of the settings, with unsaved work beside it; None for no file. Raises
-        UserError for a script with controls that the scene lacks.
+        settings_path: file of the settings, with unsaved work beside it; None for no files.
+        Raises UserError for a script with controls that the scene lacks.
         """
         splash = splash or SplashScreen(size, settings_path)
         context, resources, complaint = open_window(splash, script, head, display)
@@ -85,10 +85,10 @@ class Viewer:
         self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, context.view)
         self.schedule = Schedule(context, self.file_drop, lambda: self.mode, self.recovery.due_in)
         self.is_leaving = False
-        # For the last picture of the panels: age [s], size of the window [pixels].
+        # Age of the last picture of the panels [s], and the window's size then [pixels].
         self._panels_age = math.inf
         self._panels_size = (0, 0)
-        self._is_scene_covered = True  # by panels
+        self._is_scene_covered = True  # whether panels lie over the scene
         self._greet(complaint, script)
 
     def _greet(self, complaint: str, script: Script) -> None:
@@ -119,7 +119,7 @@ class Viewer:
         if playing:
             self.session.toggle_playing()
         self.schedule.restart()
-        stopping = cleaned_up_if_stopped(self.exporter.close)  # after the work is safe
+        stopping = cleaned_up_if_stopped(self.exporter.close)  # runs after the work is safe
         with stopping, self.recovery.guarding(), cleaned_up_if_stopped(self.remember):
             while True:
                 if self.gui.is_minimised:  # time stops, and nothing is drawn
@@ -146,9 +146,9 @@ class Viewer:
         return self.marking_mode or self.face
 
     def frame(self) -> None:
-        """Input, time, picture, panels."""
+        """Run one turn of the loop: input, time, picture, panels."""
         schedule = self.schedule
-        if self.gui.look():
+        if self.gui.read_events():
             schedule.wake()
             self.face.life.note_input()
         for _ in self.gui.turns():
@@ -188,8 +188,9 @@ class Viewer:
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
         """Draw the panels around the scene, unless their last picture suffices.
 
-        On software OpenGL they cost a quarter of the face, and while a script plays only sliders
-        move in them. Every action of the user has a response in the same frame.
+        On software OpenGL, panels take a quarter of the time that the face takes, and only their
+        sliders move while a script plays. Every action of the user has a response in the same
+        frame.
         """
         mode = self.mode
         size = self.surface.size
@@ -264,7 +265,7 @@ class Viewer:
         line = None if landmarks is None else marking.open(landmarks)
 
         def mark() -> Message:
-            """Open the marking, in the window's thread."""
+            """Open the marking; runs in the window's thread."""
             self.face.set_aside()
             self.marking_mode = MarkingMode(
                 marking, self.context, self.face.commands, self.file_drop.open, self.leave_marking
@@ -280,7 +281,7 @@ class Viewer:
             self.face.resume()
 
     def ask_to_close(self) -> str | None:
-        """Close the window, unless work would be lost: then ask first."""
+        """Close the window; if work would be lost, ask first."""
         job = self.exporter.job
         if job is not None and not job.task.is_stopped:
             name = job.target.name
