@@ -1,6 +1,6 @@
-"""Structures under translucent skin: the user's choice, and the visible parts for it.
+"""Structures under translucent skin: the user's choice, and the parts that it makes visible.
 
-`AnatomyView` holds the choice. `Anatomy` makes muscles, skull and throat of one face at their first
+`AnatomyView` has the choice. `Anatomy` makes muscles, skull and throat of one face at their first
 use. `Dissection` has these, the face's own parts, and the opacity of the skin.
 """
 
@@ -23,14 +23,14 @@ from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
-OPACITY = 0.25  # of the skin, by default
-SOFT = ("oral_cavity", "gums")  # beginnings of the names of parts that line the mouth
+OPACITY = 0.25  # default opacity of the skin
+SOFT = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
 OUTER_HAIR = (HAIR, HAIR + "_tied")
 
 
 @dataclass(frozen=True)
 class AnatomyView:
-    """The structures to show under the skin, the opacity of the skin, and whether hair is on it."""
+    """The structures to show under the skin, the opacity of the skin, and whether to show hair."""
 
     structures: tuple[str, ...] = ()
     opacity: float = OPACITY
@@ -42,31 +42,31 @@ SKIN_ALONE = AnatomyView()
 
 
 class Dissection(NamedTuple):
-    """The visible parts of a scene besides its skin, and through the skin."""
+    """The visible parts of a scene besides its skin, including parts seen through the skin."""
 
     parts: tuple[render.PlacedPart, ...]
     opacity: float = 1.0
-    """Of the skin."""
+    """Opacity of the skin."""
     cut: render.Plane | None = None
-    """Skin is opaque in front of it."""
+    """In front of this plane, skin is opaque."""
 
 
 class Anatomy:
-    """Muscles and skull of a face; other scenes only have skin."""
+    """Makes muscles and skull of a face; other scenes have no structures."""
 
     def __init__(self, scene: Drawable) -> None:
         self._scene = scene
         self._skull: dict[str, Any] = {}
-        self._necks: list[Any] | None = None  # a mask has none
+        self._necks: list[Any] | None = None  # None before their first use
         self._muscles: Muscles | None = None
-        self._followed = np.empty(0)  # the values that shaped the muscles last
+        self._followed = np.empty(0)  # state of the face at the muscles' last change
         self._halves: dict[tuple[float, str], Any] = {}  # halves of parts, by the opened side
 
     def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
-        """The chosen structures as they are now, and the scene's parts that do not hide them.
+        """Return the chosen structures in their present shape, and the parts that do not hide them.
 
-        Hair throws its shadow on closed skin. Opened skin lets light through, and all solid parts
-        throw shadows.
+        Without structures, only hair, glasses and a mask cast shadows. Light passes through
+        translucent skin, so all solid parts cast shadows there.
         """
         has_hair = has_hair and view.has_hair
         scene = self._scene
@@ -103,7 +103,7 @@ class Anatomy:
         return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
 
     def _structures(self, face: Face, view: AnatomyView) -> list[Any]:
-        """The chosen ones of throat, bones and muscles."""
+        """Return the chosen structures among throat, bones and muscles."""
         names = ["throat"]
         if "skull" in view.structures:
             names += ["cranium", "mandible", "spine"]
@@ -118,7 +118,7 @@ class Anatomy:
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
 
     def _muscles_now(self, face: Face) -> Muscles:
-        """The muscles, shaped again if the face has moved; a turn of the camera is no reason."""
+        """Return the muscles; shape them again only if the face has moved."""
         bones = face.bone_transforms()
         sums = face.simulation.controls.sums
         now = np.concatenate([face.simulation.positions, *bones.values()], axis=None)
@@ -131,18 +131,18 @@ class Anatomy:
         return self._muscles
 
     def _soft(self, view: AnatomyView) -> list[Any]:
-        """The parts that line the mouth, if they can be seen."""
+        """Return the parts that line the mouth, if they can be seen."""
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
 
     def _whole_hair(self, face: Face, view: AnatomyView) -> list[Any]:
-        """The hair on the closed side; none if both sides are open."""
+        """Return the hair on the opaque side; none if both sides are translucent."""
         side = SIDES[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
         return [self._half(face, part, side) for part in parts]
 
     def _half(self, face: Face, part: Any, side: float) -> Any:
-        """The half of a part, in its present shape, that is not on `side`."""
+        """Return the half of a part that is not on `side`, in its present shape."""
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
             self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
@@ -154,16 +154,17 @@ class Anatomy:
         return half
 
     def _openings(self) -> dict[str, render.Opening]:
-        """The present openings of the skin, by their names."""
+        """Return the present openings of the skin by name."""
         rims = self._scene.rims(render.Opening.RIM_POINTS)
         return {name: render.Opening(*rim) for name, rim in rims.items()}
 
     def _lit(
         self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]
     ) -> list[tuple[Any, render.Opening | None]]:
-        """A part, in halves if skin is open in front of one, with the opening for its light.
+        """Return a part, or its two halves on opaque and translucent sides, with their openings.
 
-        If only bones are shown, parts that line the mouth are left out on the opened side.
+        An opening limits the light on a part. If only bones are shown, parts that line the mouth
+        are left out on the translucent side.
         """
         opening = openings.get(opening_before(part.name, part.bone))
         if opening is None:
@@ -177,12 +178,12 @@ class Anatomy:
 
 
 def _middle(face: Face) -> Any:
-    """A point of the midline at rest, shape (3,)."""
+    """Return a point of the midline at rest, shape (3,)."""
     return face.rest_positions[face.head.landmarks[27]]
 
 
 def _cut(face: Face, view: AnatomyView) -> render.Plane | None:
-    """The plane in front of which the skin is closed; None without a cut."""
+    """Return the plane in front of which skin is opaque; None if both sides are translucent."""
     side = SIDES[view.side]
     if not side:
         return None

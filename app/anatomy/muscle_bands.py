@@ -22,14 +22,14 @@ from risorius.geometry.normals import vertex_normals
 from ..scenes import Face
 
 ROWS = 22  # places along a band
-AROUND = 16  # places around its cross section
+AROUND = 16  # places around a band's cross section
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
 EYE = ((5.0, 9.0), (12.5, 9.0))
 MOUTH = ((1.0, 8.0), (7.5, 8.0))
-LIPS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))  # landmarks of their edges
-RINGS = (  # beginnings and ends of names; landmarks; bands: distance outward, width [mm]
+LIPS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))  # landmarks of the lips' edges
+RINGS = (  # beginning and end of names; landmarks; for each band, distance outward and width [mm]
     ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE),
     ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE),
     ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE),
@@ -39,7 +39,7 @@ RINGS = (  # beginnings and ends of names; landmarks; bands: distance outward, w
 ALONG = np.linspace(0.0, 1.0, ROWS)
 ARCH = np.sin(np.pi * ALONG)  # 1 in the middle
 END = np.sqrt(np.clip(1.0 - (2.0 * ALONG - 1.0) ** 8, 0.0, 1.0))  # round
-NEAR = 8  # vertices that give the place of the skin
+NEAR = 8  # number of vertices that determine the place of the skin
 AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  # landmarks
 
 
@@ -56,14 +56,14 @@ class Muscles:
     faces: Integers32
     striation: Floats32
     name: str = "muscles"
-    bone: str = "neck"  # stands still: vertices have their final places
+    bone: str = "neck"  # does not move, because vertices have their final places
     shine: float = 0.42
     is_enclosed: bool = False
     strand_radius: float = 0.0
 
     @classmethod
     def of(cls, face: Face) -> Muscles:
-        """The muscles of a face in their present state."""
+        """Make the muscles of a face in their present state."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         made._build(face)
@@ -71,7 +71,7 @@ class Muscles:
         return made
 
     def _build(self, face: Face) -> None:
-        """Set up everything constant: the bands at rest, and what carries them."""
+        """Set up all constants: the bands at rest, and the skin that carries them."""
         simulation = face.simulation.clone()
         simulation.reset()
         marks = face.rest_positions[face.head.landmarks]
@@ -82,21 +82,22 @@ class Muscles:
         for name, fibres in simulation.anatomy.fibres().items():
             stem = name.removesuffix("_left").removesuffix("_right")
             row = face.head.rig["muscle"].get(stem, {})
-            if name.startswith("platysma"):  # it lies on structures without drawings
+            if name.startswith("platysma"):  # it lies on structures that are not drawn
                 continue
             for number, (fibre, line) in enumerate(zip(row.get("fibre", ()), fibres, strict=False)):
                 visible = _before_mouth(_resampled(line[None])[0], marks)
                 if visible is None:
                     continue
                 self.names.append((name, number))
-                # Half of the rig's width is flesh. Bands are 4 to 17 mm wide.
+                # Muscle takes half of the rig's width. Bands are 4 to 17 mm wide.
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
                 widths.append(np.clip(width, 4.0, 17.0) * END)
                 lines.append(visible)
                 bones.append(row.get("bone", "cranium"))
         self._is_mandible = np.array([bone == "mandible" for bone in bones])
         rings = list[Floats64]()
-        self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
+        # The controls that move each band.
+        self._controls: list[list[str]] = [[name] for name, _ in self.names]
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
             red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROWS, np.inf)
@@ -136,7 +137,7 @@ class Muscles:
         for _ in range(2):
             outside, normal, bone_depth = skin.at(rails)
             below = np.minimum(deep, np.maximum(bone_depth - thick, 0.0))
-            below = np.maximum(below, thick + 1.0)  # [mm] of skin on top
+            below = np.maximum(below, thick + 1.0)  # with 1 mm of skin on top
             rails = rails - (outside + below)[..., None] * normal
         self._rest = rails
         self._outward = normal
@@ -147,9 +148,9 @@ class Muscles:
         self._shift = rails + self._below * self._facing - x
 
     def _moved(self, face: Face) -> tuple[Floats64, Floats64]:
-        """The edges and the middles of all bands now, and the directions outward, (3, b, ROWS, 3).
+        """Return present edges and middles of all bands, and outward directions, (3, b, ROWS, 3).
 
-        A band's origin goes with its bone, its insertion with the skin.
+        A band's origin moves with its bone, and its insertion with the skin.
         """
         simulation = face.simulation
         x = simulation.positions
@@ -172,13 +173,13 @@ class Muscles:
         return rails, unit_vectors(normal)
 
     def _carry(self, x: Floats64, normals: Floats64) -> tuple[Floats64, Floats64]:
-        """The places over all bands, and unit normals there, of skin with vertices x (V, 3)."""
+        """Return places of the skin over all bands, and unit normals there; skin: x (V, 3)."""
         found = self._carriers @ np.hstack([x, normals])
         found = found.reshape(*self._rest.shape[:3], 6)
         return found[..., :3], unit_vectors(found[..., 3:])
 
     def follow(self, face: Face) -> None:
-        """Take the present shape and colours."""
+        """Update shape and colours from the face's present state."""
         rails, normal = self._moved(face)
         swollen = np.clip(self._length / _lengths(rails[1]), 0.75, 2.2)
         swollen = 1.0 + (swollen[:, None] - 1.0) * ARCH
@@ -198,7 +199,7 @@ class Muscles:
     def _set(self, grid: Floats64, active: Floats64) -> None:
         """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
-        # This share of a band's length is tendon, at both ends.
+        # Share of tendon in the colour: large at both ends of a band.
         tendon = np.clip(1.4 - np.minimum(ALONG, 1.0 - ALONG) / 0.14, 0.0, 0.92)
         share = np.tile(tendon, (len(grid), 1))
         share[len(self.names) :] = 0.0
@@ -217,7 +218,7 @@ class Muscles:
         self.colours = colours.reshape(-1, 3).astype(np.float32)
 
     def _lay_out(self) -> None:
-        """Faces and places of striation."""
+        """Set the faces, and the places of the striation."""
         count = len(self._width)
         number = np.arange(count * ROWS * AROUND).reshape(count, ROWS, AROUND)
         here = number[:, :-1]
@@ -229,7 +230,7 @@ class Muscles:
         faces = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
         self.faces = faces.astype(np.int32)
         a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
-        # Each band has its own 40 mm of the pattern.
+        # Each band uses a different part of the pattern, 40 mm apart.
         start = 40.0 * np.arange(count)[:, None, None]
         across = start + 0.5 * self._width.max(axis=1)[:, None, None] * a
         along = self._length[:, None, None] * ALONG[:, None]

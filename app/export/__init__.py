@@ -1,1 +1,1 @@
-"""The motion of a script as files for other programs."""
+"""Writes the motion of a script as files for other programs."""

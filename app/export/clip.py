@@ -1,6 +1,6 @@
 """A clip: a scene's motion in all frames of a script, for the writers of files.
 
-Lengths are millimetres; axes are those of the scene (x toward the subject's left, y up, z forward).
+Lengths are millimetres. Axes are the scene's axes (x toward the subject's left, y up, z forward).
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ from ..script import Script
 class Clip:
     """A scene in N frames.
 
-    surfaces: the skin (or the scene's one mesh) first.
-    bones: the matrices of each bone, shape (N, 4, 4): "cranium", "mandible", "eye_left", ...
-    controls: the set values of each control, shape (N,).
-    activations: the sums for each muscle, jaw, gaze, ..., shape (N,); {} without muscles.
+    surfaces: the skin, or the only mesh of a scene, comes first.
+    bones: name, such as "cranium" or "eye_left", -> matrix of the bone in each frame, (N, 4, 4).
+    controls: name of a control -> its set value in each frame, shape (N,).
+    activations: name of a muscle, jaw or gaze control -> sum of all controls that move it, shape
+        (N,); {} without muscles.
     """
 
     scene: Scene
@@ -50,7 +51,7 @@ class Clip:
 
     @property
     def frame_count(self) -> int:
-        """N."""
+        """The number N of frames."""
         assert self.skin.shapes is not None
         return len(self.skin.shapes)
 
@@ -60,16 +61,16 @@ class Clip:
         return np.arange(self.frame_count) / self.frames_per_second
 
     def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
-        """A refiner of the skin; `splits`: replace its criterion, shape (E,)."""
+        """Make a refiner of the skin. splits: of each edge, (E,), in place of the criterion."""
         return refiner_for(self.scene, refinement, splits)
 
     def refined(
         self, refinement: Refinement, refiner: refine.Refiner | None = None
     ) -> Iterator[refine.RefinedMesh]:
-        """Yield the refined skin of each frame, in order; read it before the next one.
+        """Yield the refined skin of each frame in order; the next frame overwrites its arrays.
 
-        refiner: a result of `refiner`; None: a new one. Raises UserError for a refiner that needs a
-        viewpoint, and PlugInError if code of another package fails.
+        refiner: a result of `refiner`, None for a new refiner. Raises UserError for a refiner that
+        needs a viewpoint, and PlugInError if code of another package fails.
         """
         refiner = self.refiner(refinement) if refiner is None else refiner
         plug_ins = plug_ins_of(*refinement.on(self.scene.name))
@@ -90,7 +91,7 @@ def record(
     span: tuple[float, float] | None = None,
     progress: bool = True,
 ) -> Clip:
-    """Play a script on its scene (built if None), and keep all frames, or those of `span` [s].
+    """Play a script on its scene (built if None), and record all frames, or frames in `span` [s].
 
     Raises UserError if the scene lacks a control of the script.
     """
@@ -135,7 +136,7 @@ def record(
 def _surface_of(
     part: Any, shapes: list[Floats32], matrices: Mapping[str, Floats64]
 ) -> MovingSurface:
-    """A part of a scene with these vertices in each frame; a changed shape is a new array."""
+    """Make the surface of a part. shapes: its vertices in each frame; a change has a new array."""
     is_rigid = all(each is shapes[0] for each in shapes)
     return MovingSurface(
         part.name,
@@ -152,9 +153,9 @@ def _surface_of(
 class FrameSurface:
     """One surface in one frame [mm], in the form of mesh files.
 
-    points, normals: of vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in
-    `MovingSurface`, None without a texture. source: the triangle of the surface that each triangle
-    is part of, shape (F,).
+    points, normals: of the vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in
+    `MovingSurface`, None without a texture. source: the triangle of the surface that contains each
+    triangle, shape (F,).
     """
 
     points: Floats64
@@ -178,7 +179,7 @@ def frame_surfaces(
 
 
 def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
-    """An unrefined surface in a frame."""
+    """Return an unrefined surface in a frame."""
     points = surface.at(frame)
     return FrameSurface(
         points,
@@ -191,7 +192,7 @@ def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
 
 
 def _refined(clip: Clip, refinement: Refinement) -> Iterator[FrameSurface]:
-    """Yield the refined skin of each frame, in its own arrays."""
+    """Yield the refined skin of each frame, in new arrays."""
     for mesh in clip.refined(refinement):
         faces = mesh.triangles.astype(np.int32)
         yield FrameSurface(

@@ -1,4 +1,4 @@
-"""The formats of a written clip, one row each, and the choice of a format by a file name."""
+"""The formats for a clip in a table, and the choice of a format by the name of a file."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-FRAME = "frame_{:05d}"  # names of files of a sequence, without suffix
-OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files in such a folder
+FRAME = "frame_{:05d}"  # names of the files of a sequence, without suffix
+OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files of a sequence
 
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """Options of an export, besides the clip.
+    """Options of an export besides the clip.
 
-    refinement: that of the written skin; None: the simulated mesh is written.
-    changes: whether each frame is refined by itself, into its own triangles.
+    refinement: refinement of the written skin; None: the simulated mesh is written.
+    changes: whether each frame is refined separately, so that triangles change.
     overwrite: whether frames in a folder, and files beside the output, may be replaced.
-    progress: whether a bar is shown.
-    named_only: whether to write only morph targets that ARKit names; their sum is millimetres off.
+    progress: whether a progress bar is shown.
+    named_only: whether to write only ARKit's shapes as morph targets; errors are then millimetres.
     """
 
     refinement: Refinement | None = None
@@ -53,7 +53,7 @@ class ExportRequest:
     named_only: bool = False
 
     def counted(self, frames: Iterable[Item], count: int) -> Iterator[Item]:
-        """Iterate over frames to write, with a progress bar."""
+        """Yield frames to write, with a progress bar."""
         from tqdm import tqdm
 
         hidden = not self.progress or None
@@ -62,18 +62,18 @@ class ExportRequest:
             yield from bar
 
 
-# A writer writes the whole file or raises UserError; it returns a remark for the user, or "".
+# A writer writes the whole file or raises UserError. It returns a remark for the user, or None.
 Writer = Callable[["Clip", Path, ExportRequest], str | None]
 
 
 @dataclass(frozen=True)
 class Format:
-    """One kind of file.
+    """One file format.
 
-    name: for `--as`. suffixes: those of its files; () for a folder with one file per frame.
-    writer: "module:function" in this room, imported at its use. refines: whether it can hold a
-    refined skin. changes: whether triangles may differ between frames. beside: ends of the names of
-    files beside the named one.
+    name: for `--as`. suffixes: suffixes of files; () for a folder with one file per frame.
+    writer: "module:function" in this package, imported at its use. refines: whether the format can
+    have a refined skin. changes: whether triangles may differ between frames. beside: ends of the
+    names of further files beside the output.
     """
 
     name: str
@@ -85,17 +85,17 @@ class Format:
     beside: tuple[str, ...] = ()
 
     def outputs(self, output: Path) -> tuple[Path, ...]:
-        """All written files; the named one comes first."""
+        """Return all written files; the output itself comes first."""
         return (output, *(output.with_name(output.stem + end) for end in self.beside))
 
     def load(self) -> Writer:
-        """The function that writes this format."""
+        """Import the function that writes this format."""
         module, _, name = self.writer.partition(":")
         writer: Writer = getattr(import_module(f"{__package__}.{module}"), name)
         return writer
 
 
-MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
+MESH = (".obj", ".mtl", "_skin.png")  # mesh, materials and the skin's picture
 FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
     Format("usd", "USD", (".usdz",), "usd:write_usd", changes=True),
@@ -108,7 +108,7 @@ FORMATS = (
 
 
 def format_for(output: Path, name: str | None) -> Format:
-    """The format of an output by its name or by `--as`; raises UserError if there is none."""
+    """Return the format of an output by its name or by `--as`; UserError if there is none."""
     suffix = output.suffix.lower()
     known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
     for each in FORMATS:
@@ -122,7 +122,7 @@ def format_for(output: Path, name: str | None) -> Format:
 
 
 def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
-    """UserError if the name does not suit the format, or a folder would look like a file."""
+    """Raise UserError if the name does not suit the format, or a folder has a file's suffix."""
     if not chosen.suffixes and output.suffix.lower() in known:
         raise UserError(
             f"{output}: {chosen.title} is a folder, and this is the name of a file; "
@@ -136,7 +136,7 @@ def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
 
 
 def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
-    """UserError, before any work is done, if the requested output is impossible."""
+    """Raise UserError, before any work, if the requested output is impossible."""
     if request.refinement is not None and not chosen.refines:
         names = ", ".join(each.name for each in FORMATS if each.refines)
         raise UserError(f"--refined: cannot be written as {chosen.title}; allowed are {names}")
@@ -152,7 +152,7 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
         check_folder(output, overwrite=request.overwrite)
         return
     check_file(output)
-    if not output.exists() and not request.overwrite:  # else they are from an earlier export
+    if not output.exists() and not request.overwrite:  # otherwise an earlier export wrote them
         for other in chosen.outputs(output)[1:]:
             if os.path.lexists(other):
                 raise UserError(
@@ -162,10 +162,10 @@ def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
 
 
 def write(clip: Clip, output: Path, chosen: Format, request: ExportRequest) -> str | None:
-    """Write a clip, whole or not at all; return a remark on the file for the user, if any.
+    """Write a clip completely or not at all; return a remark on the file for the user, or None.
 
-    Two threads round sums of many numbers differently from one. So one thread writes, and bytes are
-    the same within a batch and on a machine with more cores.
+    The rounding of long sums depends on the number of threads. So one thread computes, and bytes
+    are equal in a batch and on machines with more cores.
     """
     from threadpoolctl import threadpool_limits
 
@@ -189,7 +189,7 @@ def export(
     frames_per_second: float = 30.0,
     span: tuple[float, float] | None = None,
 ) -> tuple[str, str | None]:
-    """Play a script, or a span of it [s], and write it; return a line about it, and a remark."""
+    """Play a script, or a span of it [s], and write the clip; return a line and a remark."""
     from ..motion import scene_of
     from .clip import record
     from .refined import with_refined_skin
@@ -209,7 +209,7 @@ def export(
 
 
 def _size_in_words(outputs: Iterable[Path]) -> str:
-    """Total size of files, including those in a folder, in words."""
+    """Return the total size of files in words; a folder counts with its files."""
     files = [path for each in outputs for path in (each.iterdir() if each.is_dir() else [each])]
     size = sum(path.stat().st_size for path in files if path.is_file())
     return f"{size / 1e6:.1f} MB" if size >= 1_000_000 else f"{max(size / 1e3, 1.0):.0f} kB"

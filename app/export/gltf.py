@@ -1,8 +1,8 @@
-"""A clip as binary glTF (.glb), which Blender, browsers and game engines read: metres, y up.
+"""Writes a clip as binary glTF (.glb), for Blender, browsers and game engines: metres, y up.
 
-Bones are animated nodes at the pivots of the bones. All other motion is weights of morph targets:
-ARKit's shapes by name, as in an avatar (`risorius rig`), and a few unnamed ones for the rest of the
-motion. Every frame of the clip is a keyframe. The motion by the head's pose is removed from the
+Bones are animated nodes at the bones' pivots. Animated weights of morph targets make all other
+motion: ARKit's shapes by name, as in an avatar (`risorius rig`), and a few residual targets for the
+rest. Every frame of the clip is a keyframe. The motion by the head's pose is removed from the
 skin's shapes, because the bone of the head adds it again. docs/export.md describes the content of a
 file, and how other programs show it.
 """
@@ -40,10 +40,10 @@ Poses = Mapping[str, tuple[Pose, Pose]]
 
 @dataclass(frozen=True)
 class Moving:
-    """The surfaces of a clip with their targets, and their distances from the simulation.
+    """The surfaces of a clip with their targets, and their errors against the simulation.
 
-    pieces: the skin first. off: name of a bending surface -> the greatest distance of a vertex in
-    any frame [mm]. mean: root mean square over the skin's vertices and all frames [mm].
+    pieces: the skin comes first. off: name of a surface that changes its shape -> largest error of
+    a vertex in any frame [mm]. mean: root mean square over skin vertices and frames [mm].
     """
 
     pieces: list[Piece]
@@ -52,7 +52,7 @@ class Moving:
 
     @property
     def farthest(self) -> str:
-        """The surface with the greatest distance."""
+        """The name of the surface with the largest error."""
         return max(self.off, key=lambda name: self.off[name])
 
     @property
@@ -71,7 +71,7 @@ class Moving:
 
 
 def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str:
-    """Write the file; return a line with the number of targets and their distance from the clip."""
+    """Write the file; return a line with the number of targets and their errors."""
     motion = moving_pieces(clip, request)
     glb = Glb(clip.times)
     bones = {piece.bone for piece in motion.pieces if piece.bone is not None}
@@ -85,7 +85,7 @@ def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str:
 
 
 def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
-    """The surfaces of a clip with the targets that its motion needs."""
+    """Return the surfaces of a clip with the targets that its motion needs."""
     poses: Poses = {}
     weights = np.zeros((clip.frame_count, 0))
     face = clip.scene.face
@@ -100,15 +100,15 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
             pieces.append(_rigid(surface, part))
             continue
         (shaped,) = moving([_body_of(surface, part)], poses)
-        ways = surface.shapes.astype(np.float64)
+        displacements = surface.shapes.astype(np.float64)
         if part is None:
-            _take_pose_out(clip, ways)
-        ways -= surface.rest
+            _take_pose_out(clip, displacements)
+        displacements -= surface.rest
         if part is None and poses:
-            weights = nearest_weights(shaped.targets, ways, weights)
+            weights = nearest_weights(shaped.targets, displacements, weights)
         bone = None if part is None else part.bone
         named = _named(surface, bone, shaped, weights)
-        left = ways - _summed(named, named.targets)
+        left = displacements - _summed(named, named.targets)
         if not request.named_only:
             residual = decompose(left)
             left -= np.tensordot(residual.weights, residual.targets, 1)
@@ -121,14 +121,14 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
 
 
 def _rigid(surface: MovingSurface, part: Any) -> Piece:
-    """A surface that a bone moves as a whole."""
+    """Return a surface that a bone moves as a whole, without targets."""
     none = np.zeros((0, *surface.rest.shape))
     normals = part.normals.astype(np.float64)
     return Piece(surface, part.bone, normals, (), none, none, np.zeros((0, 0)))
 
 
 def _body_of(surface: MovingSurface, part: Any) -> Body:
-    """A surface as a body with a shape in each pose, relative to its bone."""
+    """Return a surface as a body, whose shape in a pose is relative to its bone."""
     if part is not None:
         return PartBody(part, surface.rest, part.bone)
     if isinstance(surface, RefinedSurface):
@@ -137,7 +137,7 @@ def _body_of(surface: MovingSurface, part: Any) -> Body:
 
 
 def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats64) -> Piece:
-    """A surface with the named shapes that move it, if any."""
+    """Return a surface with the named shapes that move it."""
     count = len(shaped.targets)
     return Piece(
         surface,
@@ -151,7 +151,7 @@ def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Fl
 
 
 def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
-    """A piece with additional targets for the rest of its motion."""
+    """Add residual targets for the rest of its motion to a piece."""
     names = tuple(f"residual {index + 1}" for index in range(len(residual.targets)))
     return replace(
         piece,
@@ -163,15 +163,15 @@ def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
 
 
 def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
-    """Sums of changes (K, V, 3) by the weights of a piece in each frame, (N, V, 3)."""
+    """Sum changes (K, V, 3) by the weights of a piece in each frame; returns (N, V, 3)."""
     return np.asarray(np.tensordot(piece.weights, changes, 1))
 
 
 def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
-    """Differences of normals from those at rest in each frame, relative to the bone, (N, V, 3)."""
+    """Return changes of normals from rest in each frame, relative to the bone, (N, V, 3)."""
     assert surface.shapes is not None
     shapes = surface.shapes.astype(np.float64)
-    is_refined = isinstance(surface, RefinedSurface)  # its normals include the turn of the head
+    is_refined = isinstance(surface, RefinedSurface)  # normals include the head's turn
     if surface is clip.skin and not is_refined:
         _take_pose_out(clip, shapes)
     bent = np.array([surface.normals_of(shape, frame) for frame, shape in enumerate(shapes)])
@@ -181,9 +181,9 @@ def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
 
 
 def _take_pose_out(clip: Clip, shapes: Floats64, *, are_places: bool = True) -> None:
-    """Remove the head's motion from shapes of the skin, (N, V, 3).
+    """Remove the head's motion from shapes or normals of the skin, (N, V, 3), in place.
 
-    are_places: whether the bone moves and turns them; it only turns normals.
+    are_places: whether shapes are vertices; normals only turn.
     """
     face = clip.scene.face
     if face is None:

@@ -1,13 +1,13 @@
-"""Motion as morph targets: a few shapes with a weighted sum for the vertices of each frame.
+"""Decomposes motion into morph targets: weighted sums of a few shapes give each frame's vertices.
 
-A singular value decomposition gives the shapes that leave the least error on average. The largest
-error counts, so the vertices with large errors get more weight, and the decomposition is repeated.
-This saves a third of the shapes (after Lawson 1961, "Contributions to the theory of linear least
-maximum approximation").
+A singular value decomposition gives the shapes with the least mean error. Here the largest error
+matters, so vertices with large errors get more weight, and the decomposition is repeated. This
+saves a third of the shapes (after Lawson 1961, "Contributions to the theory of linear least maximum
+approximation").
 
-Readers such as Blender cut weights off at 0, and their sliders at 1. A shift, the same in all
-frames, brings weights between the two; its sum is one more target, always at 1. A second target for
-the opposite direction of each shape would also work, but needs twice as many.
+Readers such as Blender clamp weights at 0, and their sliders at 1. So each weight is shifted and
+scaled to 0..1, and one more target with weight 1 subtracts the shifts. A second target for the
+opposite direction of each shape would also work, but would double the number of targets.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-TOLERANCE = 0.098  # [mm] off at most; with single precision it stays below 0.1
+TOLERANCE = 0.098  # [mm]: largest error; with single precision it stays below 0.1
 NOTHING = 1e-6  # [mm]: a target that moves every vertex by less is left out
 
 
 @dataclass(frozen=True)
 class Morphs:
-    """Shapes to add, and their weights in every frame.
+    """Morph targets and their weights in every frame.
 
     targets: displacement of each vertex at weight 1, shape (K, V, 3).
     weights: 0..1, shape (N, K).
-    error: largest one of any vertex in any frame [unit of the targets].
+    error: largest error of a vertex in any frame [unit of the targets].
     """
 
     targets: Floats64
@@ -37,14 +37,14 @@ class Morphs:
 
 
 def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) -> Morphs:
-    """The fewest targets that were found with an error of at most `tolerance`.
+    """Return few targets with an error of at most `tolerance`.
 
     moved: displacements of each vertex from rest in each frame, shape (N, V, 3), in the unit of
     `tolerance`. If `most` targets do not suffice, the error is larger. Some readers count targets
-    in a byte, and 52 more have names.
+    in a byte, and the 52 named targets also count.
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
-    # A component below this share of the largest is rounding.
+    # Components below this share of the largest component are rounding errors.
     rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), NOTHING)).sum())
     curves = curves[:, :rank]
     shapes = lengths[:rank, None] * shapes[:rank]
@@ -53,11 +53,11 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
     found: list[Morphs] = []
     low = 0
     high = limit
-    # More rounds of weighting save hardly any shape.
+    # More than 8 rounds of weighting save hardly any shape.
     for _ in range(8):
         weighed = shapes * np.repeat(weighing, 3)
         _, vectors = np.linalg.eigh(weighed @ weighed.T)
-        mixing = vectors[:, ::-1][:, :limit]  # the strongest first
+        mixing = vectors[:, ::-1][:, :limit]  # largest eigenvalues first
         mixed_curves = curves @ mixing
         mixed_shapes = mixing.T @ shapes
         while low < high:
@@ -70,16 +70,16 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
         found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
-        # In each round a vertex has at least 0.03 of the weight of the worst one.
+        # In each round, a vertex keeps at least the root of 0.03 of its relative weight.
         share = left / max(left.max(), NOTHING)
         weighing *= np.sqrt(np.maximum(share, 0.03))
         weighing /= weighing.max()
-        low = max(high - 15, 0)  # a round saves no more shapes
+        low = max(high - 15, 0)  # a round saves at most 15 shapes
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
 
 
 def follow(weights: Floats64, changes: Floats64) -> Floats64:
-    """Targets for other values of the vertices, such as normals, with the same weights.
+    """Fit targets for other values of the vertices, such as normals, to the same weights.
 
     weights: shape (N, K). changes: differences from rest, shape (N, V, 3). Returns shape (K, V, 3).
     """
@@ -87,14 +87,14 @@ def follow(weights: Floats64, changes: Floats64) -> Floats64:
 
 
 def _farthest(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
-    """Largest error of the sum of the shapes at each vertex, shape (V,)."""
+    """Return the largest error of the sum of shapes at each vertex, shape (V,)."""
     off = (curves @ shapes).reshape(moved.shape) - moved
     squares = np.einsum("nvc,nvc->nv", off, off)
     return np.asarray(np.sqrt(squares.max(axis=0)))
 
 
 def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
-    """The sum of shapes (k, 3 V) times curves (N, k), by weights from 0 to 1."""
+    """Turn the product of curves (N, k) and shapes (k, 3 V) into targets with weights 0..1."""
     signs = np.where(curves.max(axis=0) >= -curves.min(axis=0), 1.0, -1.0)
     curves = curves * signs
     shapes = shapes * signs[:, None]

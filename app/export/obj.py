@@ -1,8 +1,8 @@
-"""OBJ, which every program reads: a folder with one per frame, or one that a PC2 file moves.
+"""Writes OBJ, for nearly every program: a file per frame, or one file that a PC2 file moves.
 
-The mesh is the whole head, the skin first, in metres, so that one modifier moves everything.
-Sources: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Blender's own
-reader, the Mesh Cache modifier, and Autodesk's PointCache2.
+The mesh is the whole head, in metres, with the skin first, so that one modifier moves everything.
+Sources: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Blender's reader
+and its Mesh Cache modifier; Autodesk's PointCache2.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def write_obj(clip: Clip, folder: Path, request: ExportRequest) -> None:
 
 
 def write_pc2(clip: Clip, part: Path, request: ExportRequest) -> None:
-    """Write metres, little-endian; a sample is a frame, the first is frame 0."""
+    """Write the vertices in metres, little-endian; each frame is a sample, the first is frame 0."""
     points = []
     for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):
         if number == 0:
@@ -51,7 +51,7 @@ def write_pc2(clip: Clip, part: Path, request: ExportRequest) -> None:
 
 
 def _write_material(clip: Clip, path: Path) -> str:
-    """Write an MTL and its picture, if the skin has one; the name of the MTL, or nothing."""
+    """Write an MTL and its picture if the skin has one; return the name of the MTL, or ""."""
     if clip.scene.skin.albedo is None:
         return ""
     picture = path.with_name(f"{path.stem}_skin.png")
@@ -61,15 +61,15 @@ def _write_material(clip: Clip, path: Path) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    """Write a text with names of files: names keep their bytes, even if they are not UTF-8."""
+    """Write a text with names of files, which keep their bytes even if they are not UTF-8."""
     path.write_text(text, encoding="utf-8", errors="surrogateescape")
 
 
 def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
-    """One OBJ of one object, with a group for each surface; material: the skin's MTL.
+    """Return an OBJ of one object with a group for each surface. material: the skin's MTL.
 
-    Vertices have colours after their coordinates, as MeshLab writes and Blender reads them; they
-    are white where there is a texture.
+    Colours follow the coordinates of a vertex, as MeshLab writes and Blender reads them; vertices
+    of a textured surface are white.
     """
     texts = [f"mtllib {material}\n" if material else ""]
     points = coordinates = 1
@@ -80,7 +80,7 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
         texts.append(_rows("vn", surface.normals))
         uv = surface.uv
         face_uv = surface.face_uv
-        if uv is None or face_uv is None:  # some readers expect one at all corners
+        if uv is None or face_uv is None:  # for readers that expect uv at all corners
             uv = np.zeros((1, 2), np.float32)
             face_uv = np.zeros_like(surface.faces)
         texts.append(_rows("vt", uv))
@@ -96,13 +96,13 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
 
 
 def _rows(name: str, rows: npt.NDArray[np.floating]) -> str:
-    """A line for each row: a name, then its numbers."""
+    """Return a line for each row: a name, then the row's numbers."""
     line: str = name + " %.6g" * rows.shape[1] + "\n"
     return (line * len(rows)) % tuple(rows.ravel().tolist())
 
 
 def _faces(corners: Sequence[Integers32]) -> str:
-    """Lines of triangles, whose corners are vertex/coordinate/normal."""
+    """Return lines of triangles, whose corners are vertex/coordinate/normal."""
     line = "f" + " %d/%d/%d" * 3 + "\n"
     numbers = np.stack(corners, axis=-1)
     return (line * len(numbers)) % tuple(numbers.ravel().tolist())

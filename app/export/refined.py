@@ -1,7 +1,7 @@
-"""The refined skin of a clip as one mesh: the same vertices and triangles in every frame.
+"""Refines the skin of a clip into one mesh: the same vertices and triangles in every frame.
 
 An edge is split as often as in the frame that splits it most (`refine.splits_of_clip`). So the mesh
-is adaptive, and nowhere coarser than a frame refined by itself.
+is adaptive, and nowhere coarser than a frame that is refined separately.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Places = npt.NDArray[np.void]
 
 
 class RefinedSkin:
-    """A refined skin as a body of an avatar, refined again in each pose."""
+    """A skin as a body of an avatar, which is refined again in each pose."""
 
     name = "skin"
 
@@ -35,17 +35,17 @@ class RefinedSkin:
         self.rest: Floats64 = surface.rest
         self.faces: Integers32 = surface.faces
         self._refiner = surface.refiner
-        # Several output vertices are one place at seams of texture coordinates.
+        # At seams of texture coordinates, several output vertices have one place.
         rows = np.hstack([surface.rest, surface.rest_normals])
         _, first, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
         self._same = first[same.ravel()]
 
     def at(self, pose: Pose) -> Floats64:
-        """Its vertices in a pose, shape (V, 3)."""
+        """Return the vertices in a pose, shape (V, 3)."""
         return self._refiner.refine(pose.skin).positions.astype(np.float64)
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Unit normals for vertices at `points`, shape (V, 3) each."""
+        """Return unit normals for vertices at `points`, shape (V, 3) each."""
         joined = self._same[self.faces].astype(np.int32)
         normals: Floats64 = vertex_normals(points, joined)[self._same]
         return normals
@@ -53,11 +53,11 @@ class RefinedSkin:
 
 @dataclass(frozen=True)
 class RefinedClip:
-    """A clip with a refined skin, and its differences from skins refined frame by frame.
+    """A clip with a refined skin, compared with the frames when refined separately.
 
-    clip: one whose skin has one topology.
-    fewest, most: triangles of frames refined by themselves.
-    farthest, mean: distances of vertices from the same places in those frames [mm].
+    clip: a clip whose skin has one topology.
+    fewest, most: numbers of triangles of separately refined frames.
+    farthest, mean: distances of vertices from the same places in these frames [mm].
     """
 
     clip: Clip
@@ -94,7 +94,7 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         topologies.add(hash(mesh.triangles.tobytes()))
         splits = refiner.splits if len(counts) == 1 else np.maximum(splits, refiner.splits)
     plug_ins = plug_ins_of(*refinement.on(clip.scene.name))
-    with reported(plug_ins):  # the skin at rest may have other triangles than all frames
+    with reported(plug_ins):  # triangles at rest may differ from all frames
         at_rest = refiner.refine(clip.scene.rest_positions)
     topologies.add(hash(at_rest.triangles.tobytes()))
     changing = refiner
@@ -142,7 +142,7 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
 
 
 def _places(origins: refine.Origins) -> Places:
-    """The place of each vertex on the mesh as bytes; equal places have equal bytes, (N,)."""
+    """Return each vertex's place on the mesh as bytes, (N,); equal places have equal bytes."""
     rows = np.ascontiguousarray(
         np.concatenate([origins.vertices.astype(np.float64), origins.weights], axis=1)
     )

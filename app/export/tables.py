@@ -1,7 +1,7 @@
-"""Tables: a clip as numpy arrays [mm], or ARKit's shapes as Live Link Face's CSV.
+"""Writes tables: a clip as numpy arrays [mm], or ARKit's shapes as Live Link Face's CSV.
 
-Curves describe the visible face. Muscles, eyes and head follow their controls with different
-delays, so the values of controls are written later by these delays.
+The CSV describes the visible face. Muscles, eyes and head follow their controls with different
+delays, so the CSV has the delayed values of controls.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     curves = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     shapes = dict(zip(ARKIT, curves.T, strict=True))
     lowest = as_seen(clip.times, clip.activations)
-    other_order = {  # its columns have ARKit's order, except these
+    other_order = {  # Live Link Face has ARKit's order, except for these
         "jawLeft": "jawRight",
         "jawRight": "jawLeft",
         "mouthLeft": "mouthRight",
@@ -53,10 +53,11 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     }
     names = [other_order.get(name, name) for name in ARKIT]
     still = np.zeros(clip.frame_count)
-    # As the app spells them: JawOpen.
+    # Live Link Face begins names with a capital: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
-    # Full controls in radians. ARKit counts to the subject's right and down, ours to the left and
-    # up. The head rolls to the right shoulder there, and the axes of straight eyes point OUTWARD.
+    # Angles of controls at 1, in radians. ARKit's angles are positive to the subject's right and
+    # down, and our controls to the left and up. ARKit's roll is positive to the right shoulder, and
+    # the axes of eyes that look straight ahead point OUTWARD.
     angle_columns = {
         "HeadYaw": ("head_yaw", -np.radians(45.0)),
         "HeadPitch": ("head_pitch", -np.radians(30.0)),
@@ -74,7 +75,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     with part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["Timecode", "BlendShapeCount", *columns])
-        decimals = 6  # of numbers, without zeros at the end: three quarters of a table's size
+        decimals = 6  # with zeros at the end left out; saves a quarter of a table's size
         for time, *values in zip(clip.times, *columns.values(), strict=True):
             numbers = np.round(values, decimals) + 0.0  # -0 is 0
             texts = (np.format_float_positional(number, trim="-") for number in numbers)
@@ -82,7 +83,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
 
 
 def _timecode(time: float) -> str:
-    """A time [s] as HH:MM:SS:FF.fff, the frames of TIMECODE_RATE with their fraction."""
+    """Format a time [s] as HH:MM:SS:FF.fff, with frames and their fraction."""
     timecode_rate = 60  # Live Link Face counts this many frames a second at any camera rate
     thousandths = round(time * timecode_rate * 1000.0)
     frames, fraction = divmod(thousandths, 1000)

@@ -1,6 +1,6 @@
-"""USD: every surface as a mesh under one root, in millimetres; motion is time samples.
+"""Writes USD: each surface is a mesh under one root, in millimetres; motion is time samples.
 
-The file is a package (.usdz) of a layer and the picture of the skin.
+The file is a package (.usdz) with a layer and the picture of the skin.
 
 Source: Pixar, OpenUSD's schemas UsdGeomMesh (points, normals, primvars) and UsdPreviewSurface.
 """
@@ -35,7 +35,7 @@ ALWAYS = Usd.TimeCode.Default()
 
 def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write the package; raises OSError if the disk is full."""
-    is_text = as_text(part) == str(part)  # USD only takes names in UTF-8
+    is_text = as_text(part) == str(part)  # USD only accepts names in UTF-8
     with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
         layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")
         picture = Path(folder) / PICTURE
@@ -56,7 +56,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
 
 
 def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
-    """Put the clip on the stage: a time code for each frame."""
+    """Add the clip to the stage, with a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, METRES)
     stage.SetTimeCodesPerSecond(clip.frames_per_second)
@@ -78,7 +78,7 @@ def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
 
 
 def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> None:
-    """Add a mesh with constant triangles: its points move, or it moves as a whole."""
+    """Add a mesh with constant triangles, whose points move, or which moves as a whole."""
     _set_faces(mesh, surface.faces, ALWAYS)
     if surface.shapes is None:
         _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALWAYS)
@@ -89,7 +89,7 @@ def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> N
     if surface.matrices is not None:
         moves = np.ptp(surface.matrices, axis=0).any()
         operation = mesh.AddTransformOp()
-        matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # USD's vectors are rows
+        matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # USD uses row vectors
         if not moves:
             operation.Set(matrices[0], ALWAYS)
         else:
@@ -119,7 +119,7 @@ def _add_refined(mesh: Any, clip: Clip, request: ExportRequest) -> None:
 
 
 def _set_faces(mesh: Any, faces: npt.NDArray[Any], when: Any) -> None:
-    """Set triangles, from a time on or always."""
+    """Set triangles, from a time on or for all times."""
     counts = np.full(len(faces), 3, np.int32)
     corners = faces.astype(np.int32).ravel()
     mesh.CreateFaceVertexCountsAttr().Set(Vt.IntArray.FromNumpy(counts), when)

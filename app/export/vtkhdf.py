@@ -1,7 +1,7 @@
-"""VTKHDF, for ParaView and VTK: all frames in one HDF5 file, the triangles once if they stay.
+"""Writes VTKHDF, for ParaView and VTK: all frames in one HDF5 file, constant triangles once.
 
-Each frame is a step, which has the first places of its rows in arrays for all frames. Lengths are
-millimetres.
+Arrays contain the rows of all frames. Each frame is a step, with the number of its first row in
+each array. Lengths are millimetres.
 
 Source: Kitware, "VTKHDF format specification", version 2.0, PolyData with steps.
 """
@@ -25,12 +25,12 @@ h5py = needed("h5py", "VTKHDF", "export")
 def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:
     """Write all surfaces as one PolyData, the skin's triangles first.
 
-    Vertices have `Normals`, and, if triangles stay, `displacement` from rest. Triangles have
-    `surface`, its number among the names in the attribute `surfaces`, and `source`, the triangle of
-    the mesh that they are part of.
+    Vertices have `Normals`, and `displacement` from rest if triangles are constant. Triangles have
+    `surface`, a number among the names in the attribute `surfaces`, and `source`, the triangle of
+    the mesh that contains them.
     """
     rest = np.concatenate([each.rest for each in clip.surfaces])
-    memory = io.BytesIO()  # HDF5 crashes on a full disk
+    memory = io.BytesIO()  # because HDF5 crashes on a full disk
     with h5py.File(memory, "w") as file:
         steps = _Steps(file.create_group("VTKHDF"))
         frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
@@ -48,13 +48,13 @@ def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:
 
 
 class _Steps:
-    """The arrays of a file, which grow frame by frame, and the beginning of each frame in them."""
+    """The arrays of a file, which grow frame by frame, and the first rows of each frame."""
 
     def __init__(self, root: Any) -> None:
         self._root = root
         self._steps: dict[str, list[Any]] = defaultdict(list)
         self._meshes: dict[str, list[int]] = defaultdict(list)
-        self._begins: dict[str, Any] = {}  # beginnings of the present mesh
+        self._begins: dict[str, Any] = {}  # first rows of the present mesh
         root.attrs["Version"] = (2, 0)
         root.attrs["Type"] = np.bytes_("PolyData")
 
@@ -65,7 +65,7 @@ class _Steps:
         shifted = [surface.faces + start for surface, start in zip(frame, starts, strict=True)]
         triangles = np.concatenate(shifted)
         surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
-        # For vertices, lines, polygons and strips; only polygons have cells.
+        # Cells of vertices, lines, polygons and strips; here only polygons have cells.
         our_cells = np.array([0, 0, 1, 0])
         self._begins = {
             "PartOffsets": len(self._meshes["NumberOfPoints"]),
@@ -110,7 +110,7 @@ class _Steps:
         self._root.attrs["surfaces"] = surfaces
 
     def _append(self, name: str, rows: Any) -> None:
-        """Put rows at the end of an array."""
+        """Append rows to an array."""
         if name not in self._root:
             limits = (None, *rows.shape[1:])
             self._root.create_dataset(
@@ -123,5 +123,5 @@ class _Steps:
         array[begin:] = rows
 
     def _length(self, name: str) -> int:
-        """Number of rows of an array."""
+        """Return the number of rows of an array."""
         return len(self._root[name]) if name in self._root else 0

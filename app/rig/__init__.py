@@ -1,1 +1,1 @@
-"""Heads as avatars: named shapes of a face, on the built-in head or a file's own vertices."""
+"""Avatars: heads with named shapes, on the built-in head or on a file's own vertices."""

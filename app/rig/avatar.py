@@ -1,4 +1,4 @@
-"""`risorius rig`: a head with named shapes, from the simulation to a file."""
+"""Makes the avatar that `risorius rig` writes: a head with named shapes from the simulation."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ GLTF = (".glb", ".gltf")
 
 @dataclass(frozen=True)
 class RigRequest:
-    """Options of a rig.
+    """Options of an avatar.
 
-    kinds: those of shapes, as in `poses.KINDS`.
-    eyes: "nodes", "targets", or None for the file's usual one.
-    corrections: those of the roles of pieces.
+    kinds: kinds of shapes, as in `poses.KINDS`.
+    eyes: "nodes", "targets", or None for the usual choice of the file's format.
+    corrections: corrected roles of pieces, see `pieces.corrected`.
     adds_parts: whether missing eyes, teeth and tongue are added.
-    correctives: largest number of shapes of pairs.
-    progress: whether a bar is shown.
+    correctives: largest number of corrective shapes, each for a pair of shapes.
+    progress: whether a progress bar is shown.
     take: the take on which sums of ARKit's shapes are compared with the simulation, or None.
-    chooses_by_take: whether the take decides on correctives, not all skin.
+    chooses_by_take: whether the take decides which pairs get correctives.
     """
 
     kinds: tuple[str, ...] = ("arkit",)
@@ -54,18 +54,16 @@ class RigRequest:
     chooses_by_take: bool = False
 
     def has_eye_nodes(self, *, is_gltf: bool) -> bool:
-        """Whether eyeballs are left to nodes; those of a glTF file, which keeps its own, are not
-        unless that is asked for.
-        """
+        """Whether nodes turn the eyeballs; by default they do not in a glTF file, which is kept."""
         return self.eyes == "nodes" if is_gltf else self.eyes != "targets"
 
 
 @dataclass(frozen=True)
 class FileHead:
-    """A head from a file: its own bytes, which are written again, and the face that moves it.
+    """A head from a file: the file, its pieces, and the body that a face moves.
 
     painted: colours and pictures of the file; None for a glTF file, which is copied.
-    stored: the meshes of a glTF file, see `stored_pieces`; none for others.
+    stored: the meshes of a glTF file, see `stored_pieces`; empty for other files.
     """
 
     head: FittedHead
@@ -80,9 +78,9 @@ class FileHead:
 class Avatar:
     """A head with its named shapes.
 
-    file: that of a user's head; None: the built-in head or a person. shapes: the file's body or the
-        skin first.
-    names: those of the shapes; those of `pairs` come last. sums: errors of sums of shapes.
+    file: the file of a user's head; None for the built-in head or a person. shapes: the shapes of
+        each body; the file's body or the skin comes first.
+    names: names of the shapes; correctives of `pairs` come last. sums: errors of sums of shapes.
     """
 
     scene: FaceScene
@@ -95,7 +93,7 @@ class Avatar:
 
     @property
     def extras(self) -> dict[str, Any]:
-        """The rule of the correctives, for the extras of a file."""
+        """The rule by which programs weigh the correctives, for the extras of a file."""
         rules = [
             {"name": f"{first}_{second}", "product": [first, second]}
             for first, second in self.pairs
@@ -107,7 +105,7 @@ Say = Callable[[str], None]
 
 
 def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
-    """The avatar of a head (None: the built-in one); lines about it go to `say`.
+    """Make the avatar of a head (None: the built-in head); `say` receives lines about it.
 
     The avatar of a head from a file includes the pieces of this file.
     """
@@ -159,7 +157,7 @@ def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str
 
 
 def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
-    """The file of a fitted head, and its pieces.
+    """Read the file of a fitted head, and find its pieces.
 
     Raises AssetError for unusable files, and UserError for wrong options.
     """
@@ -197,20 +195,20 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
 def _names_of_vertices(
     count: int, painted: PaintedMesh | None, stored: Sequence[StoredPiece]
 ) -> npt.NDArray[np.object_]:
-    """The name of each vertex's object or group in the file, empty for none, (V,)."""
+    """Return the name of each vertex's object or group in the file, empty for none, (V,)."""
     names = np.full(count, "", object)
     start = 0
     for piece in stored:
         names[start : start + piece.count] = piece.name
         start += piece.count
     if painted is not None:
-        labels = np.array([*painted.parts, ""], object)  # the last is for vertices without a name
+        labels = np.array([*painted.parts, ""], object)  # the last label: no name
         names[painted.mesh.faces] = labels[painted.part][:, None]
     return names
 
 
 def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
-    """Whether a file's vertices [mm] are those of the fitted head, to 0.001 mm."""
+    """Whether a file's vertices [mm] equal the vertices of the fitted head, to 0.001 mm."""
     fitted = head.file_vertices
     if len(fitted) and fitted.max() >= len(rest):
         return False
@@ -218,7 +216,7 @@ def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
 
 
 def _missing(file: FileHead) -> set[str]:
-    """The names of built-in parts that a file lacks."""
+    """Return the names of built-in parts that a file lacks."""
     roles = {piece.role for piece in file.pieces}
     found: set[str] = set()
     if not roles & {"eye_left", "eye_right"}:

@@ -1,4 +1,4 @@
-"""Bodies: the meshes of an avatar, which give their vertices in a pose."""
+"""Bodies: the meshes of an avatar, whose vertices depend on the pose."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
 
 EYES = ("eye_left", "eye_right")  # names of bones
-LEAST = 0.01  # [mm], invisible: vertices of a shape that move less stand still
+LEAST = 0.01  # [mm]: smaller motion of a vertex is invisible, and is left out of a shape
 
 
 class Body(Protocol):
     """A mesh of an avatar.
 
-    name: unique within it. rest: its vertices [mm], shape (V, 3). faces: shape (F, 3).
+    name: unique within the avatar. rest: vertices at rest [mm], shape (V, 3). faces: (F, 3).
     """
 
     @property
@@ -35,11 +35,11 @@ class Body(Protocol):
     def faces(self) -> Integers32: ...
 
     def at(self, pose: Pose) -> Floats64:
-        """Its vertices in a pose, relative to the node that it hangs on, (V, 3)."""
+        """Return the vertices in a pose, relative to the body's node [mm], shape (V, 3)."""
         ...
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Unit normals for vertices at `points`, shape (V, 3) each."""
+        """Return unit normals for vertices at `points`, shape (V, 3) each."""
         ...
 
 
@@ -62,8 +62,8 @@ class Skin:
 class PartBody:
     """A part of a scene: an eyeball, teeth, hair.
 
-    bone: name of the node that it hangs on: the cranium, or the part's own bone, which moves it as
-    a whole.
+    bone: name of the node to which the part belongs: the cranium, or the part's own bone, which
+    moves the part as a whole.
     """
 
     part: Any
@@ -90,8 +90,9 @@ class PartBody:
 def bodies_of_parts(
     scene: FaceScene, *, eyes_are_nodes: bool, wanted: Callable[[Any], bool] = lambda _: True
 ) -> list[PartBody]:
-    """The parts of a scene at rest; those of the mandible hang on the cranium, and shapes move
-    them.
+    """Return the parts of a scene at rest.
+
+    Parts on the mandible belong to the node of the cranium, and shapes move them.
     """
     scene.reset()
     found = []
@@ -118,7 +119,7 @@ class Shaped:
 
 
 def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[Pose, Pose]]) -> list[Shaped]:
-    """Bodies with a shape for each pair of a pose and its reference pose."""
+    """Return bodies with a shape for each pair of a pose and its reference pose."""
     return [_shaped(body, poses) for body in bodies]
 
 
@@ -143,22 +144,22 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
 
 
 def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
-    """Changes of unit normals between two places of the vertices, shape (V, 3)."""
+    """Return changes of unit normals between two sets of vertices, shape (V, 3) each."""
     bent = body.normals_at(moved) - body.normals_at(before)
-    bent[np.linalg.norm(bent, axis=1) < 0.005] = 0.0  # a third of a degree
+    bent[np.linalg.norm(bent, axis=1) < 0.005] = 0.0  # 0.3 degrees
     return bent
 
 
 def poses_of(
     scene: FaceScene, names: Sequence[str], *, progress: bool
 ) -> Iterator[tuple[str, tuple[Pose, Pose]]]:
-    """The pose of each shape at 1, and its reference pose, with a progress bar."""
+    """Yield the name of each shape, its pose at 1 and its reference pose."""
     bases: dict[tuple[str, ...], Pose] = {}
     bar = tqdm(names, "Shapes", unit="shape", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for name in bar:
             values, base = settings_of(scene, name)
-            tally.frames += 1  # a window shows this as progress
+            tally.frames += 1  # the window reads this as progress
             key = tuple(base)
             if key not in bases:
                 bases[key] = rest_in(scene, base)

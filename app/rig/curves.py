@@ -1,7 +1,7 @@
-"""Curves of ARKit's shapes over time, for sums of named shapes that follow a simulated face.
+"""Curves of ARKit's shapes over time, by which named shapes follow a simulated face.
 
-Muscles, eyes and head follow their controls late, each with its own delay. The shapes of an avatar
-follow at once, so their curves are later by these delays.
+Muscles, eyes and head follow their controls with different delays. The shapes of an avatar follow
+their weights at once, so their curves are delayed in the same way.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..scenes import Scene
 
 
 def as_seen(times: Floats64, curves: Mapping[str, Floats64]) -> dict[str, Floats64]:
-    """Values of controls, (N,) each at these times [s], delayed as in the visible face."""
+    """Return values of controls at these times [s], (N,) each, delayed as in the visible face."""
     return {
         name: np.interp(times - lead_of(name, LEAD), times, values)
         for name, values in curves.items()
@@ -34,7 +34,7 @@ def shape_curves(
     activations: Mapping[str, Floats64],
     controls: Mapping[str, Floats64],
 ) -> Floats64:
-    """Visible amount of each of ARKit's shapes in N frames, in Apple's order, shape (N, 52).
+    """Return the visible amount of each of ARKit's shapes in N frames, in Apple's order, (N, 52).
 
     activations, controls: the sums and the set values of controls, (N,) each. Raises UserError for
     a scene without muscles.
@@ -44,23 +44,23 @@ def shape_curves(
     return np.stack([curves.get(name, still) for name in ARKIT], axis=1)
 
 
-def nearest_weights(targets: Floats32, ways: Floats64, curves: Floats64) -> Floats64:
-    """The weights from 0 to 1, (N, K), that bring targets nearest to a motion.
+def nearest_weights(targets: Floats32, displacements: Floats64, curves: Floats64) -> Floats64:
+    """Return the weights from 0 to 1, (N, K), whose sums of targets are nearest to a motion.
 
-    Many mixtures of shapes are equally near. The one nearest to the curves is taken, so that
-    weights keep the meaning of their names.
+    Many weights give equally near sums. Of these, the weights nearest to the curves are taken, so
+    that weights keep the meaning of their names.
 
-    targets: shape (K, V, 3). ways: displacements of the vertices from rest in each frame, shape (N,
-    V, 3), in the same unit. curves: the expected weights, shape (N, K).
+    targets: shape (K, V, 3). displacements: of the vertices from rest in each frame, in the same
+    unit, shape (N, V, 3). curves: the expected weights, shape (N, K).
     """
-    # Share of the mean square of a target. With a tenth of it, weights stray by 0.6 from the
-    # curves; with ten times as much, the fit is a fifth worse.
+    # Importance of the curves, relative to the mean square of a target. With a tenth of it,
+    # weights differ from the curves by 0.6; with ten times as much, the fit is a fifth worse.
     trust = 0.03
     rows = targets.reshape(len(targets), -1).astype(np.float64)
     products = rows @ rows.T
     least = trust * np.trace(products) / len(products)
     corner = np.linalg.cholesky(products + least * np.eye(len(products)))
-    wanted = ways.reshape(len(ways), -1) @ rows.T + least * curves
+    wanted = displacements.reshape(len(displacements), -1) @ rows.T + least * curves
     reduced = scipy.linalg.solve_triangular(corner, wanted.T, lower=True).T
     found = [scipy.optimize.lsq_linear(corner.T, each, (0.0, 1.0), "bvls").x for each in reduced]
     weights: Floats64 = np.clip(found, 0.0, 1.0)

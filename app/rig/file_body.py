@@ -1,10 +1,10 @@
 """The mesh of a file as one body: every vertex follows the simulated skin or a bone, or rests.
 
-The skin of a scene has the file's own vertices, so these have exactly the scene's places. A bag
-behind the lips is not simulated; it is stretched between the edge of the lips and both jaws,
-harmonic like a soap film.
+The skin of a scene has the file's own vertices, so these have exactly the scene's places. Skin
+behind the lips, the bag, is not simulated. A harmonic function stretches it between the edge of the
+lips and both jaws.
 
-Source: for the bag, the Laplace equation with uniform weights on the mesh's edges.
+Source of the harmonic function: the Laplace equation with uniform weights on the mesh's edges.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from .bodies import EYES
 from .pieces import FilePiece
 from .poses import CRANIUM, Pose
 
-LIP_HEIGHT = 10.0  # [mm] of the mouth in which motion changes from one jaw to the other
-ROOTED = 1.5  # [mm] by which roots of lashes may be farther from the skin than the nearest one
+LIP_HEIGHT = 10.0  # [mm]: height over which motion changes from one jaw to the other
+ROOTED = 1.5  # [mm]: roots of lashes may be this much farther from the skin than the nearest root
 TONGUE = "tongue"  # name of a part
 TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the file
 
 
 class FileBody:
-    """All vertices of a file [mm], in its order.
+    """A body with all vertices of a file [mm], in the file's order.
 
-    pivots: centres of the eyeballs, name of the bone -> (3,) [mm]. in_bag: vertices behind the lips
-    that are not simulated, shape (n,).
+    pivots: name of an eyeball's bone -> centre of the eyeball [mm], (3,). in_bag: vertices behind
+    the lips that are not simulated, shape (n,).
     """
 
     name = "head"
@@ -70,7 +70,7 @@ class FileBody:
             role = f"eye_{eye.name}"
             layers = [self.rest[piece.vertices] for piece in pieces if piece.role == role]
             balls = [sphere_of(points, eye.centre, eye.radius) for points in layers]
-            if balls:  # an iris is a smaller ball
+            if balls:  # the largest ball: an iris is smaller
                 self.pivots[role] = max(balls, key=lambda ball: ball[1])[0]
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
@@ -83,7 +83,7 @@ class FileBody:
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
     def at(self, pose: Pose) -> Floats64:
-        """The vertices in a pose, shape (V, 3)."""
+        """Return the vertices in a pose, shape (V, 3)."""
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
@@ -109,21 +109,22 @@ class FileBody:
         return spread
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Unit normals for vertices at `points` (V, 3)."""
+        """Return unit normals for vertices at `points` (V, 3)."""
         normals: Floats64 = vertex_normals(points, self.faces)[self._same]
         return normals
 
     def _between_jaws(self, numbers: Integers, mandible: Floats64) -> Floats64:
-        """Vertices between the jaws: low ones far from the throat follow the mandible more."""
+        """Move vertices between the jaws; low vertices far from the throat follow the mandible."""
         points = self.rest[numbers]
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
-        share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)  # throat: skull
+        # At the throat the share is 0.
+        share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)
         moved: Floats64 = points + share[:, None] * (moved_points(mandible, points) - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SkinPart:
-        """Lashes and brows on the skin: each vertex turns with the nearest root of its piece."""
+        """Attach lashes and brows to the skin; each vertex turns with its piece's nearest root."""
         numbers = self._pieces["on_skin"]
         points = self.rest[numbers]
         distance = closest_points(points, head.vertices, head.faces).distances
@@ -141,7 +142,7 @@ class FileBody:
 
 
 class _Bag:
-    """Skin behind the lips that is not simulated: its deep half moves with the jaws."""
+    """Skin behind the lips that is not simulated; its deep half moves with the jaws."""
 
     def __init__(self, numbers: Integers, faces: Integers32, rest: Floats64) -> None:
         depth = rest[numbers, 2]
@@ -161,14 +162,14 @@ class _Bag:
             self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
 
     def stretch(self, moved: Floats64, rest: Floats64) -> None:
-        """Write the other half into `moved` (V, 3), between the vertices that are placed."""
+        """Stretch the other half between placed vertices; writes into `moved` (V, 3)."""
         if self._solver is not None:
             ways = (moved - rest)[self._others]
             moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
 
 
 def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
-    """For each vertex of a file the first vertex at the same place, shape (V,)."""
+    """Return, for each vertex of a file, the first vertex at the same place, shape (V,)."""
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
     landmarks = head.file_vertices[head.landmarks]
     joined, _ = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
@@ -178,7 +179,7 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
-    """The place of each vertex of a file among those of the skin, -1 for others, shape (V,)."""
+    """Return the number of each file vertex in the skin, -1 for other vertices, shape (V,)."""
     place = np.full(len(same), -1, np.int64)
     place[head.file_vertices] = np.arange(len(head.file_vertices))
     return np.where(place >= 0, place, place[same])
@@ -187,9 +188,9 @@ def places_in_skin(head: FittedHead, same: Integers) -> Integers:
 def with_own_tongue(
     head: FittedHead, rest: Floats64, numbers: Integers, faces: Integers32
 ) -> tuple[Part, ...]:
-    """The parts of a head, with the tongue of the file, which bends like the built-in one.
+    """Replace the tongue in a head's parts by the file's tongue, which bends like the built-in one.
 
-    rest: all vertices of the file [mm]. numbers: those of the tongue. faces: those of the file.
+    rest: all vertices of the file [mm]. numbers: the tongue's vertices. faces: all of the file.
     """
     place = np.full(len(rest), -1, np.int32)
     place[numbers] = np.arange(len(numbers))
@@ -201,7 +202,7 @@ def with_own_tongue(
 def _part(
     name: str, points: Floats64, faces: Integers32, bone: str, roots: npt.NDArray[np.int32] | None
 ) -> Part:
-    """Vertices of the file as a part."""
+    """Make a part of vertices of the file."""
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
     normals = vertex_normals(points, faces).astype(np.float32)
     return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)

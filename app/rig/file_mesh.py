@@ -1,8 +1,8 @@
-"""A mesh file other than glTF, such as OBJ or PLY, as a glTF file: its vertices in their order.
+"""Writes a mesh file other than glTF, such as OBJ or PLY, as glTF, with its vertices in order.
 
-A vertex with several texture coordinates or normals becomes several in glTF: the first keeps its
-number, and the others follow after the last. Coordinates keep the file's numbers; the root node
-converts them to metres, y up. Polygons are written as triangles.
+A vertex with several texture coordinates or normals becomes several vertices in glTF. The first
+keeps its number; the others follow after the last vertex of the file. Coordinates keep the file's
+numbers, and the root node converts them to metres, y up. Polygons are written as triangles.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb, picture_kind
 from .surface import METRES
 
-# Units of files [mm], and the tolerance of a unit for large and small faces.
+# Usual units of files [mm], and the factor by which a face's size may differ from the usual size.
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # the greatest number of 16 bits, which no glTF vertex may have
+SHORT = 65535  # greatest number of 16 bits; glTF forbids it as a vertex's number
 
 
 @dataclass(frozen=True)
 class SplitVertices:
-    """The n vertices of a file in glTF; the first V are those of the file.
+    """The n glTF vertices of a file; the first V are the file's vertices.
 
     vertex: number in the file, shape (n,). uv, normal: numbers, -1 for none, shape (n,).
-    corners: those of the triangles, shape (F, 3).
+    corners: glTF vertices of the triangles, shape (F, 3).
     """
 
     vertex: Integers
@@ -111,7 +111,7 @@ class FileMeshWriter:
         chosen: npt.NDArray[np.bool_],
         more: dict[str, Any],
     ) -> list[dict[str, Any]]:
-        """A primitive for each material of chosen triangles; corners: those of these, (n, 3)."""
+        """Make a primitive for each material of the chosen triangles. corners: (n, 3)."""
         short = np.uint16 if corners.max(initial=0) < SHORT else np.uint32
         materials = self._painted.material[chosen]
         primitives = []
@@ -123,7 +123,7 @@ class FileMeshWriter:
         return primitives
 
     def _attributes(self) -> dict[str, int]:
-        """The vertices at rest: places, normals, and paint."""
+        """Add the vertices at rest: positions, normals, texture coordinates and colours."""
         split = self._split
         points = self._painted.mesh.vertices[split.vertex]
         return {
@@ -133,7 +133,7 @@ class FileMeshWriter:
         }
 
     def _painted_normals(self) -> Floats64:
-        """Unit normals at rest: those of the file, or smooth ones if it has none, (n, 3)."""
+        """Return unit normals at rest, (n, 3); smooth normals if the file has none."""
         split = self._split
         normals = (self._shaped.normals @ self._to_file.rotation.T)[split.vertex]
         has_own = split.normal >= 0
@@ -148,7 +148,7 @@ class FileMeshWriter:
         return unit_vectors(normals)
 
     def _paint(self, chosen: Integers) -> dict[str, int]:
-        """Texture coordinates, v down, and colours of chosen vertices, if the file has any."""
+        """Add texture coordinates, v down, and colours of chosen vertices, if the file has any."""
         painted = self._painted
         split = self._split
         found = {}
@@ -163,7 +163,7 @@ class FileMeshWriter:
         return found
 
     def _targets(self) -> list[dict[str, int]]:
-        """The shapes, in the file's unit and axes."""
+        """Add the shapes, in the file's unit and axes."""
         vertex = self._split.vertex
         turn = self._to_file.rotation.astype(np.float32)
         scale = np.float32(self._to_file.scale)
@@ -176,7 +176,7 @@ class FileMeshWriter:
         ]
 
     def _material(self, number: int) -> int:
-        """The number of a material of the file, -1 for none, in the glTF file."""
+        """Return the number in the glTF file of a material of the file, -1 for none."""
         if number not in self._materials:
             rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.6}
             material: dict[str, Any] = {"name": "skin", "pbrMetallicRoughness": rough}
@@ -195,7 +195,7 @@ class FileMeshWriter:
         rough["baseColorFactor"] = [*source.look.colour, source.look.opacity]
         if source.picture is None:
             return
-        # Old programs may write black as the colour of a material with a picture: it is ignored.
+        # Ignore a black colour with a picture: some old programs write it.
         rough["baseColorFactor"] = [1.0, 1.0, 1.0, source.look.opacity]
         content, name = source.picture
         kind = picture_kind(content)
@@ -214,7 +214,7 @@ class FileMeshWriter:
         scale = source.placing.scale
         offset = source.placing.offset
         if scale != (1.0, 1.0) or offset != (0.0, 0.0):
-            # The file counts v up.
+            # In the file, v points up.
             down = 1.0 - scale[1] - offset[1]
             placing = {"scale": list(scale), "offset": [offset[0], down]}
             info["extensions"] = {"KHR_texture_transform": placing}
@@ -223,9 +223,9 @@ class FileMeshWriter:
 
 
 def root_matrix(to_millimetres: Similarity) -> Floats64:
-    """The matrix (4, 4) that brings the coordinates of a file to metres, y up, face along z.
+    """Return the matrix (4, 4) from coordinates of a file to metres, y up, face along z.
 
-    Axes turn by right angles only. The unit is the nearest usual one, if one is near.
+    Axes turn by right angles only. If a usual unit is near the measured unit, it is used.
     """
     rotation = to_millimetres.rotation
     axes = np.zeros((3, 3))
@@ -239,7 +239,7 @@ def root_matrix(to_millimetres: Similarity) -> Floats64:
 
 
 def unit_of(scale: float) -> float:
-    """The unit of a file [mm]; `scale`: its size by a face of usual size [mm]."""
+    """Return the unit of a file [mm]. scale: the unit at which the face has its usual size [mm]."""
     unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
     return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
 

@@ -1,4 +1,4 @@
-"""A binary glTF file (.glb): one chunk of JSON, and one of numbers that the JSON refers to.
+"""Writes a binary glTF file (.glb): a chunk of JSON, and a chunk of numbers for the JSON.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers, accessors) and 4 (GLB).
 """
@@ -17,20 +17,20 @@ import PIL.Image
 
 import risorius
 
-ARRAY_BUFFER = 34962  # a buffer view for vertices
-ELEMENT_ARRAY_BUFFER = 34963  # a buffer view for corners
+ARRAY_BUFFER = 34962  # target of a buffer view with vertices
+ELEMENT_ARRAY_BUFFER = 34963  # target of a buffer view with corners of triangles
 COMPONENT_TYPES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
 TYPES: dict[tuple[int, ...], str] = {
     (): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4",
 }  # fmt: skip
-ALIGNMENT = 4  # [bytes] of chunks, and of the arrays in them
+ALIGNMENT = 4  # [bytes], of chunks and of arrays in them
 
 
 class Glb:
-    """The content of one file, in the order in which it is added.
+    """The content of one file, in the order of its addition.
 
-    parts: the document of an existing file, to be extended, and its binary chunk; None for a new
-    file. times: those of the keyframes [s], shape (N,); values are linear between them.
+    parts, numbers: document and binary chunk of an existing file to extend; None for a new file.
+    times: times of the keyframes [s], shape (N,); values between them are linear.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Glb:
         return len(items) - 1
 
     def use(self, extension: str) -> None:
-        """Name an extension that the file uses."""
+        """Add an extension to the list of used extensions."""
         used = self.parts.setdefault("extensionsUsed", [])
         if extension not in used:
             used.append(extension)
@@ -68,7 +68,7 @@ class Glb:
     def accessor(
         self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
     ) -> int:
-        """Add an array with rows of numbers, vectors or matrices (by columns).
+        """Add an array with a number, a vector or a matrix (by columns) in each row.
 
         is_bounded: whether to add the least and greatest values; positions and times need these.
         """
@@ -84,12 +84,12 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
-        """Add mostly zero vectors (V, 3), so that only the others take room."""
+        """Add vectors (V, 3) that are mostly zero; only the other vectors take room."""
         count = len(vectors)
         places = np.flatnonzero(vectors.any(axis=1))
         if not len(places):
             return self._nothing(count)
-        if len(places) > 0.8 * count:  # the numbers of places would take more room
+        if len(places) > 0.8 * count:  # indices would take more room
             return self.accessor(vectors, ARRAY_BUFFER, is_bounded=True)
         short = np.uint16 if count <= 65535 else np.uint32
         numbers = places.astype(short)
@@ -109,7 +109,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def _nothing(self, count: int) -> int:
-        """An array of this many zero vectors; equal requests share it."""
+        """Add `count` zero vectors, or return the array that was added before."""
         if count not in self._zeros:
             self._zeros[count] = self.add(
                 "accessors",
@@ -126,12 +126,12 @@ class Glb:
     def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
         """Add a picture (H, W) or (H, W, 3), top row first, as a texture.
 
-        Returns the reference to it for a material.
+        Returns the reference to the texture for a material.
 
-        kind: "png" if every bit counts.
+        kind: "jpeg", or "png" for a lossless picture.
         """
         file = io.BytesIO()
-        # Quality by eye: no blocks in skin, a sixth of the PNG.
+        # Quality chosen by eye: no blocks in skin, a sixth of the PNG's size.
         PIL.Image.fromarray(image).save(file, kind, quality=92, subsampling=0)
         return {"index": self.add("textures", {"source": self.image(file.getvalue(), kind)})}
 
@@ -141,7 +141,7 @@ class Glb:
         return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
     def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
-        """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""
+        """Add a node's "translation", "rotation" or "weights" at each time, first axis N."""
         if self._input is None:
             self._input = self.accessor(self._times.astype(np.float32), is_bounded=True)
         rows = values.ravel() if path == "weights" else values
@@ -152,7 +152,7 @@ class Glb:
         self._tracks["channels"].append(channel)
 
     def to_bytes(self, title: str, roots: Sequence[int]) -> bytes:
-        """The whole file; title: that of its motion. roots: added nodes without a parent."""
+        """Return the file. title: title of the motion. roots: added nodes without a parent."""
         if self._input is not None:
             self.add("animations", {"name": title, **self._tracks})
         if "scenes" not in self.parts:
@@ -169,7 +169,7 @@ class Glb:
         return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
     def _view(self, data: bytes, target: int | None) -> int:
-        """Add bytes, aligned."""
+        """Add aligned bytes as a buffer view; return its number."""
         self._numbers += b"\0" * (-len(self._numbers) % ALIGNMENT)
         view = {"buffer": 0, "byteOffset": len(self._numbers), "byteLength": len(data)}
         self._numbers += data
@@ -177,7 +177,7 @@ class Glb:
 
 
 def picture_kind(content: bytes) -> str | None:
-    """The kind of a picture's file by its first bytes, such as "image/png"; None for others."""
+    """Return the kind of a picture by its first bytes, such as "png"; None for other files."""
     if content.startswith(b"RIFF") and content[8:12] == b"WEBP":
         return "webp"
     kinds = {b"\x89PNG": "png", b"\xff\xd8": "jpeg", b"\xabKTX 20": "ktx2"}

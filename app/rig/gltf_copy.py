@@ -1,8 +1,8 @@
-"""A glTF file, unchanged except for named shapes that are appended to its meshes.
+"""Copies a glTF file, and appends named shapes to its meshes.
 
 Nodes, skins, materials, other meshes, animations, extras and extensions stay unchanged. Data in
-other files or in text move into the one binary chunk. If a file has weights for its own shapes,
-ours are added with weight 0.
+other files or in text move into the single binary chunk. Where the file has weights for its own
+shapes, weight 0 is added for each new shape.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets) and 4 (GLB).
 """
@@ -26,13 +26,13 @@ from risorius.geometry.arrays import Floats32, Integers
 from .bodies import Shaped
 from .glb import Glb, picture_kind
 
-TAKEN = ".risorius"  # ending of names that the file already has
+TAKEN = ".risorius"  # is appended to a name that the file already has
 
 
 def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
-    """The document of a glTF file with all data in one buffer, and these data.
+    """Return the document of a glTF file with all data in one buffer, and the buffer.
 
-    folder: the one with its other files. Raises AssetError for missing ones.
+    folder: folder of the file's other files. Raises AssetError for missing files.
     """
     text, data = chunks_of(content)
     document: dict[str, Any] = json.loads(text.decode("utf-8-sig"))
@@ -45,7 +45,7 @@ def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
 
 
 def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
-    """All data of a document one after another; its views and pictures get these places."""
+    """Join all data of a document; its views and pictures then refer to the joined data."""
     data = bytearray()
     starts = []
     for buffer in document.get("buffers", []):
@@ -74,7 +74,7 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
 
 @dataclass(frozen=True)
 class _Changes:
-    """Changes of one primitive by our shapes, in its file's coordinates, (K, n, 3) each."""
+    """Changes of a primitive's vertices by the new shapes, in its own coordinates, (K, n, 3)."""
 
     places: Floats32
     normals: Floats32
@@ -86,10 +86,10 @@ class GltfShapes:
     def __init__(
         self, glb: Glb, shaped: Shaped, to_millimetres: Similarity, cut: LipCut | None
     ) -> None:
-        """cut: the one between the lips; shapes include its vertices."""
+        """cut: the cut between the lips, whose doubled vertices the shapes include."""
         doubled = np.zeros(0, np.int64) if cut is None else cut.sources
         count = len(shaped.body.rest) - len(doubled)
-        self._sources = np.append(np.arange(count), doubled)  # vertices of the file
+        self._sources = np.append(np.arange(count), doubled)  # the file's vertex for each vertex
         self._glb = glb
         self._document = glb.parts
         self._shaped = shaped
@@ -104,11 +104,11 @@ class GltfShapes:
     ) -> None:
         """Add the shapes to all meshes that they move.
 
-        pieces: places of their vertices. vertices: those of each piece, see `vertices_of`.
+        pieces: where the file stores vertices. vertices: numbers for each piece, see `vertices_of`.
         """
         changes: dict[int, dict[int, _Changes]] = {}
         for piece, own in zip(pieces, vertices, strict=True):
-            # A mesh that several nodes show has one set of shapes: those of the first node.
+            # If several nodes show a mesh, it gets the shapes of the first node.
             of_mesh = changes.setdefault(piece.mesh, {})
             if piece.primitive not in of_mesh and self._shaped.targets[:, own].any():
                 of_mesh[piece.primitive] = self._changes(piece, own)
@@ -117,13 +117,13 @@ class GltfShapes:
                 self._append_to(mesh, of_mesh, names, extras)
 
     def _changes(self, piece: StoredPiece, own: Integers) -> _Changes:
-        """The shapes of a piece in its primitive's form."""
+        """Return the changes of a piece in the coordinates of its primitive."""
         turn = self._to_file.rotation
         matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))
         matrices = matrices[self._sources[own] - own[0]]
         back = np.linalg.pinv(matrices)
         scale = np.cbrt(np.abs(np.linalg.det(matrices)))[:, None, None]
-        # A normal n of the scene is M^-T of a stored one.
+        # The scene's normal is M^-T times the stored normal.
         unturn = matrices.swapaxes(1, 2) / np.maximum(scale, 1e-12)
         moved = self._to_file.scale * (self._shaped.targets[:, own] @ turn.T)
         bent = self._shaped.bends[:, own] @ turn.T
@@ -182,14 +182,14 @@ class GltfShapes:
                     continue
                 sampler = animation["samplers"][channel["sampler"]]
                 wide = self._widened(sampler["output"], old, added)
-                if used.count(channel["sampler"]) > 1:  # the others weigh other meshes
+                if used.count(channel["sampler"]) > 1:  # another mesh also uses it
                     animation["samplers"].append({**sampler, "output": wide})
                     channel["sampler"] = len(animation["samplers"]) - 1
                 else:
                     sampler["output"] = wide
 
     def _widened(self, accessor: int, old: int, added: int) -> int:
-        """Weights of `old` shapes at each time, followed by `added` zeros."""
+        """Add weights of `old` shapes at each time, each followed by `added` zeros."""
         found = self._document["accessors"][accessor]
         view = self._document["bufferViews"][found["bufferView"]]
         kind = np.dtype(COMPONENTS[found["componentType"]])

@@ -1,7 +1,7 @@
-"""A glTF file with sealed lips: its primitives with the vertices that the cut doubles.
+"""Cuts sealed lips in the primitives of a glTF file, by doubling the vertices along the cut.
 
-A doubled vertex has all attributes of its original, and the changes of the file's own shapes. A cut
-primitive gets its own arrays.
+A doubled vertex has all attributes of its original, and the changes by the file's own shapes. A cut
+primitive gets new arrays, because other primitives may use the old ones.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
 
 def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
-    """The numbers in the mesh of the vertices of each piece, those that a cut doubles last."""
+    """Return the mesh's numbers of each piece's vertices; vertices that a cut doubles come last."""
     found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)
@@ -42,7 +42,7 @@ def cut_primitives(
 ) -> None:
     """Double the vertices of the primitives that a cut crosses.
 
-    file: the same document, read. vertices: those of each piece, see `vertices_of`.
+    file: the same document, as read. vertices: numbers for each piece, see `vertices_of`.
     """
     done = set()
     for piece, numbers in zip(pieces, vertices, strict=True):
@@ -64,13 +64,13 @@ def cut_primitives(
         triangles[is_below] = new[triangles[is_below]]
         kind = np.uint16 if len(rows) <= np.iinfo(np.uint16).max else np.uint32
         primitive["indices"] = glb.accessor(triangles.astype(kind).ravel(), ELEMENT_ARRAY_BUFFER)
-        primitive["mode"] = 4  # triangles, even if it was a strip or a fan
+        primitive["mode"] = 4  # triangles replace a strip or a fan
 
 
 def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Integers, name: str) -> int:
-    """A new accessor with some rows of one; names of bones stay whole numbers."""
+    """Add an accessor with some rows of another accessor; numbers of bones stay integers."""
     values = file.values(accessor)[rows]
-    if values.shape[1] == 1:  # a scalar: an attribute of some program
+    if values.shape[1] == 1:  # a scalar attribute of some program
         values = values[:, 0]
     if not name.startswith("JOINTS"):
         values = values.astype(np.float32)

@@ -1,8 +1,8 @@
-"""Errors of sums of shapes against the simulation, and pairs that are worth their own shape.
+"""Errors of sums of shapes against the simulation, and pairs of shapes that need a corrective.
 
-Programs add shapes up, but skin does not: an open mouth puckers less, and a shut lid cannot shut
-again. A corrective shape of two shapes corrects this: it is added with the product of their
-weights.
+Programs add shapes, but real skin does not: an open mouth puckers less, and a shut lid cannot shut
+again. A corrective shape for a pair of shapes removes the error: programs add it with the product
+of the pair's weights.
 
 Source: for correctives, Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
 blendshape facial models", section 4 (combination shapes).
@@ -26,13 +26,13 @@ from ..stopping import cleaned_up_if_stopped
 from .bodies import Shaped
 from .poses import Pose, rest_in
 
-PAIRS = (  # in each, two motions share skin
+PAIRS = (  # sums of shapes that move the same skin
     ("jawOpen", "mouthPucker"),
     ("jawOpen", "mouthSmileLeft", "mouthSmileRight"),
     ("eyeBlinkLeft", "eyeLookDownLeft"),
     ("noseSneerLeft", "mouthUpperUpLeft"),
 )
-TRIED = 4  # simulated pairs for each chosen one
+TRIED = 4  # simulated pairs for each chosen pair
 OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 
 
@@ -40,7 +40,7 @@ OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 class Difference:
     """Error of a sum of shapes against the simulation [mm].
 
-    names: those of the shapes. most: largest error of a vertex. mean: root mean square over skin
+    names: names of the shapes. most: largest error of a vertex. mean: root mean square over skin
     that the simulation moves.
     """
 
@@ -55,7 +55,7 @@ class Difference:
 class Sums:
     """Sums of the shapes of a scene's skin, compared with its simulation.
 
-    corrected: pairs whose correctives are added; `poses` includes their poses.
+    corrected: pairs whose correctives are included; `poses` has the poses of these pairs.
     """
 
     def __init__(
@@ -66,50 +66,54 @@ class Sums:
     ) -> None:
         self._scene = scene
         self._areas = vertex_areas(scene.rest_positions, scene.faces)
-        self._ways = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
+        self._displacements = {name: pose.skin - base.skin for name, (pose, base) in poses.items()}
         self._corrected = corrected
         for first, second in corrected:
-            self._ways[f"{first}_{second}"] -= self._ways[first] + self._ways[second]
+            self._displacements[f"{first}_{second}"] -= (
+                self._displacements[first] + self._displacements[second]
+            )
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
         """Pairs of shapes that may occur together.
 
-        Opposites, such as an eye that looks up and down, and shapes that are shares of others, are
+        Opposite shapes, such as a look up and a look down, and shapes that are shares of others are
         left out.
         """
         shares = self._scene.simulation.controls.tables.share_of
-        names = [name for name in self._ways if name not in shares]
+        names = [name for name in self._displacements if name not in shares]
         return [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
 
     def difference(self, names: Sequence[str]) -> Difference:
-        """The difference of a sum of some shapes at 1."""
+        """Return the error of the sum of some shapes at 1."""
         together = rest_in(self._scene, dict.fromkeys(names, 1.0)).skin
-        way = together - self._scene.rest_positions
-        return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), way)
+        displacement = together - self._scene.rest_positions
+        return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), displacement)
 
     def sum(self, weights: Mapping[str, float]) -> Floats64:
-        """Displacements of the skin's vertices for weights of shapes, shape (V, 3)."""
+        """Return displacements of the skin's vertices for weights of shapes [mm], shape (V, 3)."""
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
-            total += weight * self._ways[name]
+            total += weight * self._displacements[name]
         for first, second in self._corrected:
             product = weights.get(first, 0.0) * weights.get(second, 0.0)
             if product:
-                total += product * self._ways[f"{first}_{second}"]
+                total += product * self._displacements[f"{first}_{second}"]
         return total
 
-    def _difference(self, names: tuple[str, ...], summed: Floats64, way: Floats64) -> Difference:
-        off = np.linalg.norm(summed - way, axis=1)
-        length = np.linalg.norm(way, axis=1)
+    def _difference(
+        self, names: tuple[str, ...], summed: Floats64, displacement: Floats64
+    ) -> Difference:
+        off = np.linalg.norm(summed - displacement, axis=1)
+        length = np.linalg.norm(displacement, axis=1)
         is_moved = length > 0.2 * length.max(initial=0.0)
         areas = self._areas * is_moved
         square = float((areas * off**2).sum() / max(float(areas.sum()), 1e-12))
         return Difference(names, float(off.max(initial=0.0)), float(np.sqrt(square)))
 
     def shared(self, first: str, second: str) -> float:
-        """Amount of skin that both shapes move, a number for comparing pairs [mm4]."""
-        lengths = [np.linalg.norm(self._ways[name], axis=1) for name in (first, second)]
+        """Return how much skin both shapes move, for comparing pairs [mm4]."""
+        lengths = [np.linalg.norm(self._displacements[name], axis=1) for name in (first, second)]
         return float((self._areas * lengths[0] * lengths[1]).sum())
 
 
@@ -118,7 +122,7 @@ def table(
     poses: Mapping[str, tuple[Pose, Pose]],
     corrected: Sequence[tuple[str, str]] = (),
 ) -> list[Difference]:
-    """The differences of PAIRS, as far as their shapes exist; arguments as in `Sums`."""
+    """Return the errors of PAIRS whose shapes exist; arguments as in `Sums`."""
     sums = Sums(scene, poses, corrected)
     return [sums.difference(names) for names in PAIRS if set(names) <= set(poses)]
 
@@ -126,9 +130,9 @@ def table(
 def worth_correcting(
     scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]], count: int, *, progress: bool
 ) -> list[tuple[str, str]]:
-    """The pairs of shapes with the largest errors of sums, at most `count`, largest first.
+    """Return at most `count` pairs of shapes with the largest errors of their sums, largest first.
 
-    For each wanted pair, TRIED pairs are simulated: those that share the most skin.
+    TRIED times `count` pairs are simulated: the pairs that share most skin.
     """
     sums = Sums(scene, poses)
     tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]
@@ -142,7 +146,7 @@ def worth_correcting(
 def corrective_poses(
     scene: FaceScene, pairs: Sequence[tuple[str, str]]
 ) -> dict[str, tuple[Pose, Pose]]:
-    """For each pair the pose of both at 1, and rest; see `corrected`."""
+    """Return, for each pair, the pose with both shapes at 1, and the rest pose; see `corrected`."""
     rest = rest_in(scene, {})
     return {
         f"{first}_{second}": (rest_in(scene, {first: 1.0, second: 1.0}), rest)
@@ -151,7 +155,7 @@ def corrective_poses(
 
 
 def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[str]) -> Shaped:
-    """A body whose last shapes, those of pairs, become differences from sums of two shapes."""
+    """Turn the last shapes, poses of pairs, into differences from the sums of the pairs' shapes."""
     if not len(shaped.targets):
         return shaped
     targets = shaped.targets.copy()
@@ -165,7 +169,7 @@ def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[
 
 
 def _are_opposite(first: str, second: str) -> bool:
-    """Whether two shapes exclude each other, or are two sides of one that hardly meet."""
+    """Whether two shapes exclude each other, or are two sides that hardly share skin."""
     if (first, second) in OPPOSITE or (second, first) in OPPOSITE:
         return True
     if twin_of(first) == second and not first.startswith("mouth"):

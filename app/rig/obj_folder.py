@@ -1,10 +1,9 @@
-"""An avatar as a folder of OBJs, one per shape, for programs that make targets of meshes.
+"""Writes an avatar as a folder of OBJs, one per shape, for programs that make targets of meshes.
 
-All have the same vertices in the same order: `neutral.obj` at rest, and every other one with its
-shape at 1. A user's OBJ keeps its lines, except those of vertices that a shape moves, and of
-polygons at a cut between sealed lips; its material libraries and their pictures are copied. Any
-other head is written as triangles, body by body: in the unit of its file, or, for the built-in
-head, in metres.
+All files have the same vertices in the same order: `neutral.obj` at rest, and every other file with
+its shape at 1. A user's OBJ keeps its lines, except for moved vertices, and for polygons at a cut
+between sealed lips. Its material libraries and their pictures are copied. Any other head is written
+as triangles, body by body, in the unit of its file; the built-in head is in metres.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from risorius.geometry.arrays import Floats64
 from .avatar import Avatar, FileHead
 from .surface import METRES
 
-OWN = re.compile(r"\w[\w.]*\.obj")  # names of files in such a folder
+OWN = re.compile(r"\w[\w.]*\.obj")  # names of files that this module writes
 ELEMENT = re.compile(rb"(?m)^[ \t]*([vf])[ \t]+([^\r\n#]*)")
 VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 
@@ -49,7 +48,7 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
 
 
 def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
-    """Each file's name, and the displacements of each body's vertices from rest [mm], (V, 3)."""
+    """Yield each file's name, and displacements of each body's vertices from rest [mm], (V, 3)."""
     still = [np.zeros_like(shaped.body.rest) for shaped in avatar.shapes]
     yield "neutral", still
     for number, name in enumerate(avatar.names):
@@ -63,19 +62,19 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
 
 
 def _has_plain_lines(content: bytes, file: FileHead) -> bool:
-    """Whether an OBJ's lines can stay: none continues in the next one, and none is in UTF-16."""
+    """Whether an OBJ's lines can stay: no line continues in the next, and none is in UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
     return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
 
 
 def _count_of(file: FileHead) -> int:
-    """Number of vertices of a user's OBJ."""
+    """Return the number of vertices of a user's OBJ."""
     cut = file.head.lip_cut
     return len(file.body.rest) - (0 if cut is None else len(cut.sources))
 
 
 def _own_text(content: bytes, file: FileHead) -> bytes:
-    """The text of a user's OBJ; a cut between its lips doubles vertices in it."""
+    """Return the text of a user's OBJ, with doubled vertices if its lips are cut."""
     cut = file.head.lip_cut
     return content if cut is None else _with_lips_cut(content, cut, _count_of(file))
 
@@ -83,7 +82,7 @@ def _own_text(content: bytes, file: FileHead) -> bytes:
 def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
     """Copy the material libraries of an OBJ, and their pictures, to the same places in a folder.
 
-    is_kept: whether bytes are copied unchanged; else as UTF-8. Pictures that are missing, or lie
+    is_kept: whether bytes are copied unchanged, or as UTF-8. Pictures that are missing, or lie
     outside the mesh's folder, are not copied.
     """
     assert file.painted is not None
@@ -100,16 +99,16 @@ def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
 
 
 def _write_beside(folder: Path, name: str, content: bytes) -> None:
-    """Write a file under the name that another file uses for it."""
+    """Write a file at the relative path by which another file names it."""
     path = folder / os.path.normpath(PureWindowsPath(name).as_posix())
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
 
 
 def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
-    """An OBJ of this many vertices, with the doubled vertices of a cut after the last one.
+    """Append the doubled vertices of a cut to an OBJ of `count` vertices.
 
-    Polygons of the lower lip take the new vertices. A polygon that the cut crosses becomes
+    Polygons of the lower lip get the new vertices. A polygon that the cut crosses becomes
     triangles.
     """
     below = set(map(tuple, cut.below.tolist()))
@@ -117,7 +116,7 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
     rows: list[bytes] = []
 
     def line(found: re.Match[bytes]) -> bytes:
-        """The line of the next vertex, or of a polygon."""
+        """Return the line of the next vertex, or of a polygon."""
         if found[1] == b"v":
             rows.append(found[0].rstrip())
             is_last = len(rows) == count
@@ -141,9 +140,10 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
 def _cut_polygons(
     corners: Sequence[int], below: Collection[tuple[int, ...]], new: Mapping[int, int]
 ) -> list[list[tuple[int, int]]]:
-    """A polygon after the cut, or its triangles if the cut crosses it: places in it and vertices.
+    """Return a polygon after the cut, or its triangles if the cut crosses the polygon.
 
-    below: triangles of the lower lip, the least number first. new: vertices that these take over.
+    A corner is a pair of its place in the polygon and its vertex. below: triangles of the lower
+    lip, with sorted vertices. new: old vertex -> new vertex for triangles of the lower lip.
     """
     pieces = []
     becomes: dict[int, set[int]] = {}
@@ -163,7 +163,7 @@ def _cut_polygons(
 
 
 def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
-    """An OBJ with new coordinates for the moved vertices [mm], (V, 3)."""
+    """Return an OBJ with new coordinates. change: displacements of its vertices [mm], (V, 3)."""
     assert file.painted is not None
     moved = file.head.to_millimetres.inverse.vectors(change)
     points = file.painted.mesh.vertices + moved
@@ -171,7 +171,7 @@ def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
     numbers = iter(range(len(points)))
 
     def line(found: re.Match[bytes]) -> bytes:
-        """The line of the next vertex."""
+        """Return the line of the next vertex."""
         number = next(numbers)
         if not is_moved[number]:
             return found[0]
@@ -181,7 +181,7 @@ def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
 
 
 def _triangles(avatar: Avatar, changes: list[Floats64]) -> str:
-    """All bodies as one OBJ, each as a group."""
+    """Return all bodies as one OBJ, with a group for each body."""
     lines = []
     first = 1
     file = avatar.file

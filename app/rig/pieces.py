@@ -1,8 +1,8 @@
-"""The pieces of a head's file: connected triangles, and the role of each.
+"""Finds the pieces of a head's file, which are sets of connected triangles, and their roles.
 
-A piece is an eyeball, teeth, the tongue, lashes, hair, a body. The skin, on which the landmarks
-lie, is none of these. A piece is recognised by its place: eyeballs are round and lie behind the
-lids; pieces in the mouth lie where the built-in teeth and tongue were fitted.
+A piece can be an eyeball, teeth, the tongue, lashes, hair or a body. The skin, on which the
+landmarks lie, is not a piece. Form and place decide the role: eyeballs are round and lie behind
+the lids, and pieces in the mouth lie at the fitted places of the built-in teeth and tongue.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ ROLES = {  # role of a piece -> its motion
     "body": "body or clothes, still",
 }
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
-FACE = slice(17, 68)  # landmarks, without the jaw line
-BESIDE = 12.0  # [mm] about these, in which lashes and brows may lie
+FACE = slice(17, 68)  # landmarks without the jaw line
+BESIDE = 12.0  # [mm] from these landmarks to lashes and brows, at most
 CHIN = 8  # landmark
-LOWER_LIP = 57  # landmark, below its middle
+LOWER_LIP = 57  # landmark below the middle of the lower lip
 NOSE_BRIDGE = 27  # landmark
 
 
@@ -45,9 +45,10 @@ NOSE_BRIDGE = 27  # landmark
 class FilePiece:
     """Connected vertices of a file, and their role.
 
-    number: its number in options. vertices: their numbers, shape (n,). role: one of ROLES.
-    middle: that of its box [mm], shape (3,). name: that of its object or group in the file, or
-        empty.
+    number: number of the piece in options. vertices: vertices in the file, shape (n,). role: one of
+        ROLES.
+    middle: middle of the bounding box [mm], shape (3,). name: name of the object or group in the
+        file, or empty.
     """
 
     number: int
@@ -64,10 +65,10 @@ def find_pieces(
     head: FittedHead,
     names: npt.NDArray[np.object_],
 ) -> list[FilePiece]:
-    """The pieces of a file except the one with the skin, in the order of the file.
+    """Return the pieces of a file except the skin, in the order of the file.
 
     rest: all vertices [mm], shape (V, 3). faces: shape (F, 3). skin: vertices of the skin.
-    names: that of each vertex's object or group, shape (V,).
+    names: name of each vertex's object or group, shape (V,).
     """
     piece = pieces_of(faces, len(rest))
     order = np.argsort(piece, kind="stable")
@@ -94,7 +95,7 @@ def find_pieces(
 def _role_of(
     points: Floats64, middle: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
 ) -> str:
-    """The role of a piece. points: its vertices [mm], shape (n, 3)."""
+    """Return the role of a piece. points: vertices of the piece [mm], shape (n, 3)."""
     for eye in head.eyes:
         if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
@@ -116,7 +117,7 @@ def _role_of(
 def _is_on_face(
     points: Floats64, middle: Floats64, distance: Floats64, landmarks: Floats64
 ) -> bool:
-    """Whether a piece is a lash, a brow or the like. distance: from its points to the skin [mm]."""
+    """Whether a piece is a lash, a brow or the like. distance: from points to the skin [mm]."""
     face = landmarks[FACE]
     is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
     # Glasses span both eyes and hang in front of them.
@@ -131,7 +132,7 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
     high = points.max(axis=0)
     jaw_line = landmarks[:17]
     is_low = low[1] < landmarks[LOWER_LIP, 1] and high[1] < landmarks[NOSE_BRIDGE, 1]
-    below_chin = 15.0  # [mm] that the top of a goatee may lie there; clothes begin lower
+    below_chin = 15.0  # [mm] from the chin down to the top of a goatee; clothes begin lower
     is_low = is_low and high[1] > landmarks[CHIN, 1] - below_chin
     is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and middle[2] > jaw_line[:, 2].mean()
     is_amid = abs(middle[0] - landmarks[CHIN, 0]) < 15.0
@@ -139,7 +140,7 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
 
 
 def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
-    """The role of a piece at the place of the built-in teeth and tongue; None for others."""
+    """Return the role of a piece at the built-in teeth or tongue; None for other pieces."""
     parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
         return None
@@ -167,12 +168,12 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
 
 
 def _extent(values: Floats64) -> float:
-    """Difference between the greatest and the least of some numbers; 0 for none."""
+    """Return the greatest minus the least of some numbers; 0 for no numbers."""
     return float(np.ptp(values)) if len(values) else 0.0
 
 
 def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[FilePiece]:
-    """Pieces with the roles that options give them: "NUMBER=ROLE", "FIRST-LAST=ROLE", "NAME=ROLE".
+    """Set roles of pieces by options: "NUMBER=ROLE", "FIRST-LAST=ROLE" or "NAME=ROLE".
 
     Raises UserError for an unknown number, name or role.
     """
@@ -190,7 +191,7 @@ def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[F
 
 
 def _numbers_in(text: str, count: int) -> range:
-    """The numbers of "3" or "4-20"; UserError for numbers outside 1 to `count`, and other text."""
+    """Parse "3" or "4-20"; UserError for other text, and for numbers outside 1 to `count`."""
     written = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?", text)
     first = int(written[1]) if written else 0
     last = int(written[2] or first) if written else 0
@@ -203,7 +204,7 @@ def _numbers_in(text: str, count: int) -> range:
 
 
 def described(pieces: Sequence[FilePiece]) -> list[str]:
-    """A line for each piece; neighbours of one role, such as strands of hair, share one."""
+    """Describe pieces in lines; neighbours of one role, such as strands of hair, share a line."""
     lines = []
     first = 0
     while first < len(pieces):
@@ -229,7 +230,7 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
 
 
 def _names_in(group: Sequence[FilePiece]) -> str:
-    """The names of some pieces in brackets, at most three; empty if none has a name."""
+    """Return at most three names of pieces in brackets; empty if no piece has a name."""
     names = list(dict.fromkeys(piece.name for piece in group if piece.name))
     if len(names) > 3:
         names[2:] = [f"{len(names) - 2} more"]

@@ -1,4 +1,4 @@
-"""Poses in which a face rests, and the names of shapes made of them."""
+"""Poses in which a face has come to rest, and the names of the shapes made from them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..recordings.names import ARKIT, VISEMES
 from ..scenes import FaceScene
 
 KINDS = ("arkit", "units", "visemes", "expressions")
-STILL = 0.001  # [mm] in a step: a face with less motion rests
+STILL = 0.001  # [mm] in a step: a face that moves less is at rest
 CRANIUM = "cranium"  # name of a bone
 HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
@@ -26,8 +26,8 @@ HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 class Pose:
     """A face at one moment, relative to its cranium [mm].
 
-    skin: its vertices, shape (V, 3). matrices: those of the bones, name -> (4, 4), for columns.
-    parts: the vertices of each part relative to its bone, name -> (n, 3).
+    skin: vertices, shape (V, 3). matrices: name of a bone -> matrix (4, 4), for column vectors.
+    parts: name of a part -> vertices relative to the part's bone, (n, 3).
     """
 
     skin: Floats64
@@ -36,7 +36,7 @@ class Pose:
 
 
 def pose_of(scene: FaceScene) -> Pose:
-    """The present pose of a scene."""
+    """Return the present pose of a scene."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM])
     share = scene.face.head_weight
@@ -48,7 +48,7 @@ def pose_of(scene: FaceScene) -> Pose:
 
 
 def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Floats64:
-    """The skin (V, 3) before the turn by the head's bone, which it follows by shares (V,)."""
+    """Remove the cranium's motion from the skin (V, 3), which follows it by shares (V,)."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
     turns = np.eye(3) + share[:, None, None] * (cranium[:3, :3] - np.eye(3))
@@ -57,30 +57,30 @@ def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Flo
 
 
 def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
-    """The pose in which a face comes to rest with these controls set, all others at 0.
+    """Return the pose in which a face comes to rest with these controls, and all others at 0.
 
-    The face starts from rest each time, so a pose does not depend on the one before.
+    The face starts from rest each time, so a pose does not depend on the last pose.
     """
     scene.reset()
     scene.pose(values)
     scene.simulation.jump(scene.values)
     before = np.array(scene.positions)
     calm = 0
-    for _ in range(120):  # most faces rest after a fifth of these steps
+    for _ in range(120):  # most faces need a fifth of these steps
         scene.step(1.0 / 60.0)
         moved = float(np.abs(scene.positions - before).max())
         calm = calm + 1 if moved < STILL else 0
-        if calm == 3:  # a face that reverses stands still for one step
+        if calm == 3:  # motion that reverses is still for one step only
             break
         before[:] = scene.positions
     return pose_of(scene)
 
 
 def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
-    """The controls that become shapes, in the order of `kinds`; ARKit's have Apple's order.
+    """Return the controls that become shapes, in the order of `kinds`; ARKit's in Apple's order.
 
-    Turns of the head are left out: the node "cranium" has them. Raises UserError for an unknown
-    kind.
+    Turns of the head are left out, because the node "cranium" makes them. Raises UserError for an
+    unknown kind.
     """
     found: list[str] = []
     for kind in kinds:
@@ -99,10 +99,10 @@ def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
 
 
 def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str, float]]:
-    """The controls of a shape, and those of its reference pose.
+    """Return the controls of a shape's pose, and of its reference pose.
 
-    A control that is a share of another one, such as `mouthClose` of `jawOpen`, adds to that
-    control at 1.
+    If a control is a share of another control, such as `mouthClose` of `jawOpen`, the other control
+    is 1 in both poses.
     """
     whole = scene.simulation.controls.tables.share_of.get(name)
     base: dict[str, float] = {} if whole is None else {whole: 1.0}
@@ -110,6 +110,6 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
 
 
 def moved_part(part: Any, pose: Pose) -> Floats64:
-    """The vertices of a part in a pose, relative to the cranium, shape (n, 3)."""
+    """Return the vertices of a part in a pose, relative to the cranium, shape (n, 3)."""
     points = pose.parts[part.name].astype(np.float64)
     return moved_points(pose.matrices[part.bone], points)

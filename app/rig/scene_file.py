@@ -1,4 +1,4 @@
-"""The built-in head and made persons as an avatar: a scene's own surfaces, with named shapes."""
+"""Writes the built-in head or a person as an avatar: the scene's surfaces with named shapes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .surface import MovingSurface
 
 
 def surface_of(scene: FaceScene, shaped: Shaped) -> MovingSurface:
-    """The surface of a body of a scene."""
+    """Return the surface of a body of a scene."""
     body = shaped.body
     if isinstance(body, PartBody):
         part = body.part
@@ -48,7 +48,7 @@ def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) 
 
 
 def piece_of(scene: FaceScene, shaped: Shaped, names: tuple[str, ...]) -> Piece:
-    """A body of a scene with its shapes, as a piece that does not move by itself."""
+    """Return a body of a scene with its shapes, as a piece without animation."""
     body = shaped.body
     bone = None
     normals = shaped.normals

@@ -1,4 +1,4 @@
-"""Surfaces of a scene as meshes of a glTF file, with their materials and their morph targets."""
+"""Writes surfaces of a scene as meshes of a glTF file, with materials and morph targets."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .surface import METRES, MovingSurface
 class Piece:
     """A surface with its morph targets.
 
-    bone: the one that moves it as a whole; None: no bone, or the skin's own weights.
+    bone: the bone that moves the surface as a whole; None for no bone, or for the skin's weights.
     normals: unit normals at rest, shape (V, 3).
-    names: those of the K targets.
+    names: names of the K targets.
     targets, bends: changes of vertices [mm] and normals by each target, shape (K, V, 3).
-    weights: those of each target in each frame, shape (N, K).
+    weights: weight of each target in each frame, shape (N, K).
     """
 
     surface: MovingSurface
@@ -47,7 +47,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
     surface = piece.surface
     faces: npt.NDArray[Any] = surface.faces
     vertices = coordinates = np.arange(len(surface.rest))
-    if surface.face_uv is not None:  # where there are seams, vertices are split
+    if surface.face_uv is not None:  # splits vertices at seams
         corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
         pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
         (vertices, coordinates) = pairs.T
@@ -77,7 +77,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
         attributes["JOINTS_0"] = of_vertices(joints)
         attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
-    # 16 bits can number this many vertices.
+    # 16 bits suffice for this number of vertices.
     short = np.uint16 if len(vertices) <= 65535 else np.uint32
     primitive: dict[str, Any] = {
         "attributes": attributes,
@@ -91,7 +91,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
         mesh["weights"] = [0.0] * len(piece.targets)
-        mesh["extras"] = {"targetNames": list(piece.names)}  # all readers look for names here
+        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers expect names
     return glb.add("meshes", mesh)
 
 
@@ -100,7 +100,7 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # chosen by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
-        # Roughness, chosen by eye; parts go from dull to wet by their shine.
+        # Roughness, chosen by eye: shine makes parts wet.
         dull_roughness = 0.75
         wet_roughness = 0.12
         rough["roughnessFactor"] = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
@@ -122,11 +122,11 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
 def _normal_map(
     surface: MovingSurface, fine: assets.FineShape, wrinkles: assets.Wrinkles | None
 ) -> npt.NDArray[np.uint8]:
-    """Normals of the fine shape with wrinkles at rest: along u, across u, and outward (H, W, 3)."""
+    """Make a normal map (H, W, 3) of shape and resting wrinkles: along u, across u, outward."""
     assert surface.uv is not None and surface.face_uv is not None
     places = surface.uv[surface.face_uv]
     texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
-    # Slopes are for a unit of u and of v; here they are for a millimetre along u, and across it.
+    # Convert slopes per unit of u and of v to slopes per millimetre along u and across u.
     along, aside = rates(places, surface.rest[surface.faces]).swapaxes(0, 1)
     length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
     shear = (along * aside).sum(axis=1) / length
@@ -149,9 +149,9 @@ def _normal_map(
 def _resting_slopes(
     surface: MovingSurface, wrinkles: assets.Wrinkles, texels: Texels, size: int
 ) -> npt.NDArray[np.float64]:
-    """Slopes along u and v of wrinkles that show at rest, such as folds of lids, shape (n, 2).
+    """Return slopes along u and v of wrinkles that show at rest, such as folds of lids, (n, 2).
 
-    texels: those of a map of `size` texels each way.
+    texels: texels of a map with `size` texels along each side.
     """
     readiness = np.minimum(np.linalg.norm(wrinkles.across, axis=2), 1.0)
     amounts = wrinkles.resting[:, None] * readiness  # (V, 2)

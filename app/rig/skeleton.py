@@ -1,10 +1,10 @@
-"""Bones of a scene as nodes of a glTF file; each node is at the pivot of its bone.
+"""Writes bones of a scene as nodes of a glTF file; each node is at the pivot of its bone.
 
     neck ── cranium ─┬─ eye_left, eye_right ── eyeballs
                      ├─ mandible
                      └─ teeth, tongue, hair, ...
 
-The skin hangs on cranium and neck; the neck does not move.
+The skin follows cranium and neck; the neck does not move.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Skeleton:
     """The nodes of the bones that carry surfaces.
 
     roots: numbers of the nodes without a parent.
-    skin: number of the glTF skin of a face, None for a scene without a face.
+    skin: number of a face's glTF skin; None for a scene without a face.
     """
 
     def __init__(
@@ -42,8 +42,8 @@ class Skeleton:
         *,
         skins: bool = True,
     ) -> None:
-        """used: bones that carry surfaces. motion: the matrices of each bone, (N, 4, 4); None: they
-        stand still. skins: whether cranium and neck bend a surface.
+        """used: bones that carry surfaces. motion: matrices of each bone, (N, 4, 4); None without
+        motion. skins: whether to add a glTF skin of cranium and neck.
         """
         self._glb = glb
         still = np.eye(4)[None]
@@ -60,27 +60,27 @@ class Skeleton:
         self._pivots = {NECK: pivots[CRANIUM], **pivots}
         self.roots = [self._add(NECK, None)]
         head = self._add(CRANIUM, NECK)
-        # No part of the head hangs on the mandible, because shapes move it; a beard may.
+        # Shapes move all parts at the jaw, so no part but a beard belongs to the mandible.
         for bone in sorted((used | {MANDIBLE}) - {CRANIUM, NECK}):
             self._add(bone, CRANIUM)
         if not skins:
             return
         to_bone = np.eye(4, dtype=np.float32)
-        to_bone[3, :3] = -METRES * pivots[CRANIUM]  # columns first
+        to_bone[3, :3] = -METRES * pivots[CRANIUM]  # stored by columns
         matrices = glb.accessor(np.stack([to_bone, to_bone]))
         joints = {"joints": [*self.roots, head], "inverseBindMatrices": matrices}
         self.skin = glb.add("skins", joints)
 
     def pivot(self, bone: str | None) -> Floats64:
-        """Place of a bone's node at rest [mm], shape (3,); the origin for None."""
+        """Return the place of a bone's node at rest [mm], shape (3,); the origin for None."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
     def hang(self, node: int, bone: str) -> None:
-        """Attach a node to a bone."""
+        """Make a node a child of a bone's node."""
         self._nodes[bone].setdefault("children", []).append(node)
 
     def note(self, bone: str, extras: dict[str, Any]) -> None:
-        """Give a bone's node some extras."""
+        """Set the extras of a bone's node."""
         self._nodes[bone]["extras"] = extras
 
     def _add(self, bone: str, parent: str | None) -> int:
@@ -92,14 +92,14 @@ class Skeleton:
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
         translations = METRES * local[:, :3, 3]
-        still_motion = 1e-7  # [m, or of a quaternion]: a node that moves less stands still
+        still_motion = 1e-7  # [m], or in a quaternion: smaller motion is left out
         if np.abs(translations - shift).max() > still_motion:
             self._glb.animate(node, "translation", translations)
         rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
             canonical=True
         )
         if np.abs(rotations[:, :3]).max() > still_motion:
-            # q and -q are the same turn, but values between two keyframes differ.
+            # q and -q are the same rotation, but interpolated values differ.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
             self._glb.animate(node, "rotation", rotations)
@@ -108,7 +108,7 @@ class Skeleton:
         return node
 
     def _places(self, bone: str) -> Floats64:
-        """Matrices (N, 4, 4) from a bone's node to the scene [mm]."""
+        """Return matrices (N, 4, 4) from a bone's node to the scene [mm]."""
         to_pivot = np.eye(4)
         to_pivot[:3, 3] = self.pivot(bone)
         places: Floats64 = self._motion.get(bone, self._still) @ to_pivot

@@ -11,20 +11,20 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
-METRES = 0.001  # a millimetre; programs for animation read plain numbers as metres
+METRES = 0.001  # in a millimetre; animation programs read plain numbers as metres
 
 
 @dataclass(frozen=True)
 class MovingSurface:
     """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
 
-    name: unique within the clip: "skin", or that of the part.
+    name: "skin", or the name of the part; unique within the clip.
     rest: vertices at rest, shape (V, 3), float64.
     faces: counter-clockwise from the visible side, shape (F, 3), int32.
-    shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
-    matrices: move the whole of it in each frame, shape (N, 4, 4), float64; None: not moved.
-    uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
-    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None if a texture has them.
+    shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as `rest`.
+    matrices: motion of the whole surface in each frame, shape (N, 4, 4), float64; None: no motion.
+    uv, face_uv: texture coordinates, shape (U, 2), and their number at each corner, shape (F, 3).
+    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None with a texture.
     shine: 0 dull, 1 wet.
     """
 
@@ -39,16 +39,16 @@ class MovingSurface:
     shine: float = 0.0
 
     def at(self, frame: int) -> Floats64:
-        """The vertices in a frame, shape (V, 3)."""
+        """Return the vertices in a frame, shape (V, 3)."""
         points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
         if self.matrices is None:
             return points
         return moved_points(self.matrices[frame], points)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
-        """Unit normals, shape (V, 3), of vertices at `points` in a frame.
+        """Return unit normals of vertices at `points` in a frame, shape (V, 3) each.
 
-        frame: None at rest.
+        frame: number of the frame, None for the surface at rest.
         """
         return vertex_normals(points, self.faces)
 
@@ -66,8 +66,8 @@ class MovingSurface:
 class RefinedSurface(MovingSurface):
     """A refined surface, with the normals of its refiner.
 
-    rest_normals: those at rest, shape (V, 3). normals: those in each frame, shape (N, V, 3).
-    sources: the triangle of the scene's mesh that each triangle is part of, shape (F,).
+    rest_normals: normals at rest, shape (V, 3). normals: normals in each frame, shape (N, V, 3).
+    sources: the triangle of the scene's mesh that contains each triangle, shape (F,).
     origins: where each vertex lies on the scene's mesh. refiner: refines the scene's mesh into
     these triangles.
     """
@@ -79,7 +79,7 @@ class RefinedSurface(MovingSurface):
     refiner: refine.Refiner = field(kw_only=True)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
-        """The refiner's normals, shape (V, 3)."""
+        """Return the refiner's normals, shape (V, 3)."""
         normals = self.rest_normals if frame is None else self.normals[frame]
         return normals.astype(np.float64)
 

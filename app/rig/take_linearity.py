@@ -1,7 +1,7 @@
-"""Errors of sums of shapes against the simulation of a take, with a tracker's weights.
+"""Errors of sums of shapes against the simulation of a take, such as a recorded performance.
 
-The weights are the curves of ARKit's shapes that `risorius export -o take.csv` writes. So this is
-the distance between an avatar and its face while both play a take.
+The weights are the curves of ARKit's shapes that `risorius export -o take.csv` writes. So the error
+is the distance between an avatar and its simulated face while both play the take.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from .curves import shape_curves
 from .linearity import TRIED, Difference, Sums
 from .poses import Pose, pose_of, rest_in
 
-FRAMES_PER_SECOND = 15.0  # this share of a take is as good as all
+FRAMES_PER_SECOND = 15.0  # these frames represent the whole take
 
 
 @dataclass(frozen=True)
 class PlayedTake:
     """A take on a face.
 
-    title: that of the take. ways: displacements of the skin's vertices from rest in each frame
-        [mm], (N, V, 3).
-    curves: those of ARKit's shapes, (N, 52).
+    title: title of the take. displacements: of the skin's vertices from rest in each frame [mm],
+        (N, V, 3).
+    curves: weights of ARKit's shapes, (N, 52).
     """
 
     title: str
-    ways: Floats32
+    displacements: Floats32
     curves: Floats64
 
 
@@ -48,19 +48,19 @@ def played_take(scene: FaceScene, script: Script) -> PlayedTake:
     times = []
     sums = []
     controls = []
-    ways = []
+    displacements = []
     for time in play(scene, script, FRAMES_PER_SECOND, progress=False):
         times.append(time)
         sums.append(np.array(moved.wanted))
         controls.append(scene.values.numbers)
-        ways.append((pose_of(scene).skin - scene.rest_positions).astype(np.float32))
+        displacements.append((pose_of(scene).skin - scene.rest_positions).astype(np.float32))
     curves = shape_curves(
         scene,
         np.array(times),
         dict(zip(moved.lowest, np.stack(sums, axis=1), strict=True)),
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
     )
-    return PlayedTake(script.title or script.source, np.stack(ways), curves)
+    return PlayedTake(script.title or script.source, np.stack(displacements), curves)
 
 
 def worth_correcting_on(
@@ -71,10 +71,10 @@ def worth_correcting_on(
     *,
     progress: bool,
 ) -> list[tuple[str, str]]:
-    """The pairs of ARKit's shapes, at most `count`, whose correctives bring sums nearest to a take.
+    """Return at most `count` pairs of ARKit's shapes whose correctives fit a take best.
 
-    Only pairs that the take plays together on the same skin are simulated. The pair that reduces
-    the remaining squares most is chosen, repeatedly, as long as one reduces them.
+    Only pairs that the take plays together on the same skin are simulated. Pairs are chosen one
+    after another: each time the pair that most reduces the squared error, while any reduces it.
     """
     weights = dict(zip(ARKIT, take.curves.T, strict=True))
     sums = Sums(scene, {name: poses[name] for name in ARKIT})
@@ -86,19 +86,19 @@ def worth_correcting_on(
     tried = sorted(together, key=lambda pair: -played[pair])[: TRIED * count]
     if not tried:
         return []
-    ways = []
+    displacements = []
     bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for pair in bar:
-            way = rest_in(scene, dict.fromkeys(pair, 1.0)).skin - scene.rest_positions
-            ways.append(way - sums.sum(dict.fromkeys(pair, 1.0)))
+            displacement = rest_in(scene, dict.fromkeys(pair, 1.0)).skin - scene.rest_positions
+            displacements.append(displacement - sums.sum(dict.fromkeys(pair, 1.0)))
     shares = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
-    columns = np.stack([(shares * way).ravel() for way in ways], axis=1)
+    columns = np.stack([(shares * displacement).ravel() for displacement in displacements], axis=1)
     products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
-    along = np.zeros(products.shape)  # remainder of each frame along each way
-    for frame, way in enumerate(take.ways):
+    along = np.zeros(products.shape)  # error of each frame, projected on each corrective
+    for frame, displacement in enumerate(take.displacements):
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
-        along[frame] = (shares * (way - sums.sum(at_once))).ravel() @ columns
+        along[frame] = (shares * (displacement - sums.sum(at_once))).ravel() @ columns
     return _greediest(tried, products, along, columns.T @ columns, count)
 
 
@@ -109,10 +109,10 @@ def _greediest(
     lengths: Floats64,
     count: int,
 ) -> list[tuple[str, str]]:
-    """The pairs that reduce the squares most, one after another.
+    """Choose the pairs greedily, by the reduction of the squared error.
 
-    products: weights of the pairs in each frame, (N, K). along: remainder of each frame along the
-    way of each pair, (N, K). lengths: products of ways with each other, (K, K).
+    products: weights of the correctives in each frame, (N, K). along: scalar products of each
+    frame's error with each corrective, (N, K). lengths: scalar products of correctives, (K, K).
     """
     left = along.copy()
     found: list[tuple[str, str]] = []
@@ -133,18 +133,18 @@ def difference_on(
     poses: Mapping[str, tuple[Pose, Pose]],
     pairs: Sequence[tuple[str, str]] = (),
 ) -> Difference:
-    """Errors of sums on a take: the largest, and the root mean square over frames and skin.
+    """Return the errors of sums on a take: the largest, and the RMS over frames and skin.
 
-    poses: those of ARKit's shapes, and of the pairs whose correctives are added.
+    poses: poses of ARKit's shapes, and of the pairs whose correctives are included.
     """
     sums = Sums(scene, poses, pairs)
     areas = vertex_areas(scene.rest_positions, scene.faces)
     shares = areas / areas.sum()
     farthest = 0.0
     squares = []
-    for frame, way in enumerate(take.ways):
+    for frame, displacement in enumerate(take.displacements):
         weights = dict(zip(ARKIT, take.curves[frame].tolist(), strict=True))
-        off = np.linalg.norm(sums.sum(weights) - way, axis=1)
+        off = np.linalg.norm(sums.sum(weights) - displacement, axis=1)
         farthest = max(farthest, float(off.max()))
         squares.append(float(shares @ off**2))
     return Difference((take.title,), farthest, float(np.sqrt(np.mean(squares))))

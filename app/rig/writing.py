@@ -1,4 +1,4 @@
-"""An avatar as a binary glTF file, metres, y up, or as a folder of OBJs."""
+"""Writes an avatar as a binary glTF file, in metres, y up, or as a folder of OBJs."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
 from .surface import METRES
 
-LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes of each eye, by its side
+LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes, without the side
 
 
 def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> tuple[int, int]:
-    """Write an avatar, whole or not at all.
+    """Write an avatar completely, or not at all.
 
-    Return the size of its files [bytes], and the number of meshes in the file or files in the
+    Returns the size of its files [bytes], and the number of meshes in the file, or of files in the
     folder.
     """
     if is_folder:
@@ -46,13 +46,13 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
 
 
 def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:
-    """Make the avatar of a head (None: the built-in one) and write it."""
+    """Make the avatar of a head (None: the built-in head), and write it."""
     title = head.files[0].stem if head is not None and head.files else output.stem
     write_avatar(avatar_of(head, request, say), output, title, is_folder=False)
 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:
-    """The whole file. title: that of the head."""
+    """Return the whole file. title: title of the head."""
     if avatar.file is not None and avatar.file.painted is None:
         return _copied(avatar, avatar.file, title)
     glb = Glb()
@@ -69,7 +69,7 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
 
 
 def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
-    """An unchanged glTF file with the shapes, and, on request, built-in parts."""
+    """Return a copy of a glTF file with the shapes, and, on request, with built-in parts."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
     cut = file.head.lip_cut
@@ -150,9 +150,9 @@ def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
 
 
 def looks_of(avatar: Avatar, eye: str, turn: Floats64) -> dict[str, Any]:
-    """Turns of an eye's node for each of its shapes at 1: quaternions x, y, z, w.
+    """Return rotations of an eye's node for each of its shapes at 1: quaternions x, y, z, w.
 
-    turn: matrix (3, 3) from the face's axes to those of the node.
+    turn: matrix (3, 3) from the face's axes to the node's axes.
     """
     side = eye.removeprefix("eye_").capitalize()
     found = {}

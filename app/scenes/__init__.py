@@ -1,8 +1,8 @@
 """Scenes to animate: the built-in head with its muscles, or the paper's plane (Fig. 9).
 
-A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
-knows nothing of refinement or drawing. `build_scene` makes one by its name. Read from below:
-drawable.py (a visible mesh), scene.py (a movable one), then each kind.
+A scene has a triangle mesh whose topology never changes, and moves its vertices as time passes. It
+is independent of refinement and drawing. `build_scene` makes a scene by its name. Read drawable.py
+(a visible mesh) first, then scene.py (a mesh that controls move), then each kind of scene.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class ControlTable:
 
 
 def controls_of(scene: str) -> ControlTable:
-    """The controls of the scene of this name, without building it: nothing is compiled."""
+    """Return the controls of the scene with this name, without building and compiling it."""
     if scene == PlaneScene.name:
         return ControlTable(PlaneScene.groups, PlaneScene.limits, PlaneScene.actions)
     controls = sim.controls_of(assets.load("head"))
@@ -73,7 +73,7 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """The scene called `name`, with a user's head; raises UserError for a scene without a head."""
+    """Build the scene called `name`; raises UserError for a head in a scene without heads."""
     if head is None:
         return SCENES[name]()
     if name != "face":
@@ -82,7 +82,7 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
 
 
 def build_face(head: FittedHead | None = None) -> FaceScene:
-    """A face, by default of the built-in head; UserError for a head that cannot be simulated."""
+    """Build a face, by default of the built-in head; UserError if it cannot be simulated."""
     try:
         return FaceScene(head)
     except ValueError as error:
@@ -90,7 +90,7 @@ def build_face(head: FittedHead | None = None) -> FaceScene:
 
 
 def own_head(head: Path, landmarks: Path | None) -> FittedHead:
-    """The user's own head, fitted; landmarks: None for a known topology."""
+    """Fit the user's own head. landmarks: None for a known topology."""
     fitted = fit_head(head, landmarks)
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)
@@ -98,10 +98,10 @@ def own_head(head: Path, landmarks: Path | None) -> FittedHead:
 
 
 def called_head(who: int | str) -> FittedHead:
-    """The person with a number or a name, or the coarse head."""
+    """Return the person with a number or a name, or the coarse head."""
     return coarse_head() if who == COARSE else person_called(who)
 
 
 def head_in_words(who: int | str) -> str:
-    """Words for such a head in a list."""
+    """Describe a result of `called_head` in a list."""
     return "Coarse head" if who == COARSE else person_in_words(who)

@@ -1,7 +1,7 @@
-"""A skin of more triangles than can be simulated in time: it follows a simplified mesh.
+"""A skin with too many triangles to simulate in real time; it follows a simplified mesh.
 
-Its vertices are bound to that mesh at rest (refine.Embedding). No triangle is split for it: the
-embedding evaluates the smooth surface at each vertex.
+The vertices of the skin are bound to the simplified mesh at rest (refine.Embedding). No triangle is
+split, because the embedding evaluates the smooth surface at each vertex.
 """
 
 from __future__ import annotations
@@ -17,29 +17,29 @@ from risorius.geometry.read_only import read_only
 
 
 class DenseSkin:
-    """The vertices of a skin that a simulation with fewer vertices carries.
+    """The vertices of a skin that a simulation with fewer vertices moves.
 
-    rest_positions: those at rest [mm], shape (V, 3), read only.
+    rest_positions: vertices at rest [mm], shape (V, 3), read only.
     """
 
     def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
-        """Bind vertices (V, 3) of triangles (F, 3), at rest, to the mesh of `simulation`."""
+        """Bind vertices at rest (V, 3), with triangles (F, 3), to the mesh of `simulation`."""
         from risorius.refine import Embedding  # few heads need it
 
         self.rest_positions = vertices
-        # Normals keep vertices of the upper lip with the upper lip.
+        # Normals prevent that vertices of the upper lip are bound to the lower lip.
         normals = _smooth_normals(vertices, faces)
         self._embedding = Embedding(
             simulation.faces, simulation.rest_positions, vertices, normals=normals
         )
         self._positions = vertices.copy()
         self._shown = read_only(self._positions)
-        self._wanted: Floats64 | None = None  # simulated vertices that are not yet followed
+        self._wanted: Floats64 | None = None  # simulated vertices to follow at the next read
 
     def follow(self, simulated: Floats64) -> None:
-        """Follow simulated vertices, shape (K, 3), when `positions` is read next.
+        """Follow simulated vertices, shape (K, 3), at the next read of `positions`.
 
-        A frame has several steps of the simulation, and positions are read only after the last.
+        A frame has several simulation steps, and positions are read only after the last step.
         """
         self._wanted = simulated
 
@@ -53,11 +53,11 @@ class DenseSkin:
         return self._shown
 
     def carry(self, values: Floats64) -> Floats64:
-        """Carry values of simulated vertices, shape (K,), to those of the skin, shape (V,)."""
+        """Carry values of simulated vertices, shape (K,), to vertices of the skin, shape (V,)."""
         return self._embedding.carry(values)
 
     def clone(self) -> DenseSkin:
-        """A copy of the skin, which moves independently."""
+        """Return a copy of the skin, which moves independently."""
         twin = copy.copy(self)
         twin._embedding = copy.deepcopy(self._embedding)
         twin._positions = self._positions.copy()
@@ -66,13 +66,13 @@ class DenseSkin:
 
 
 def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:
-    """Sums of unit normals around vertices, shape (V, 3).
+    """Return sums of unit normals around vertices, shape (V, 3).
 
     A scan has folds of single triangles, where the normal of one vertex points into the face.
     """
     normals = vertex_normals(vertices, faces)
     corners = faces.ravel()
-    rounds = 2  # each includes one more ring of neighbours
+    rounds = 2  # each round includes one more ring of neighbours
     for _ in range(rounds):
         sums = np.repeat(normals[faces].sum(axis=1), 3, axis=0)
         columns = [np.bincount(corners, each, len(vertices)) for each in sums.T]

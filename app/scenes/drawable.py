@@ -1,6 +1,6 @@
-"""A drawable: a triangle mesh whose vertices move, images over it, and further parts.
+"""A drawable: a triangle mesh whose vertices move, its images, and further parts.
 
-Drawing needs no more. A scene (scene.py) moves the mesh by controls.
+A drawable has all that drawing needs. A scene (scene.py) also moves the mesh by controls.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ Pixels = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SkinImages:
-    """The images over a mesh, by its texture coordinates, and the fade at its end.
+    """The images on a mesh, its texture coordinates, and the fade at its end.
 
-    uv: texture coordinates, (U, 2). face_uv: which of them each corner has, (F, 3).
+    uv: texture coordinates, (U, 2). face_uv: number of the coordinates at each corner, (F, 3).
     albedo: sRGB, (H, W, 3). in_tone: makes the albedo for an individual typology angle [deg].
-    ambient_occlusion: over the albedo, (H, W); None: no shade.
+    ambient_occlusion: factor on the light, (H, W); None: no occlusion.
     fine_shape: form of the skin beyond its triangles. wrinkles: the furrows of the skin.
-    fade: of each vertex, (V, 2): the share that shows, 0 to 1, also beyond; and a number below 0
-        where the inner side does not show. None: all of it shows.
+    fade: for each vertex, (V, 2): the opacity, 0 to 1 after clamping; and a number below 0 where
+        the inner side is invisible. None: the whole mesh is visible.
     """
 
     uv: Floats32 | None = None
@@ -63,7 +63,7 @@ class Framing:
 class Drawable:
     """A mesh for drawing.
 
-    name: that of the scene, by which looks choose options.
+    name: name of the scene, by which looks choose options.
     faces: (F, 3). rest_positions: (V, 3) [mm].
     called: name of the head, if it is one. face: the simulated face, if there is one.
     """
@@ -92,7 +92,7 @@ class Drawable:
         return self._positions_now
 
     def place(self, positions: Points) -> None:
-        """Bring the vertices to these places [mm], shape (V, 3)."""
+        """Set the vertices [mm], shape (V, 3)."""
         self._positions_now = positions
 
     @property
@@ -101,15 +101,15 @@ class Drawable:
         return ()
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:
-        """The present openings of its skin, by names of `openings.opening_before`.
+        """Return the present openings of the skin, by the names in `openings.opening_before`.
 
-        point_count: number of points of each rim, even.
+        point_count: even number of points of each rim.
         """
         return {}
 
     def bone_transforms(self) -> Mapping[str, Points]:
-        """Present places of the rigid parts: a (4, 4) matrix for each bone."""
+        """Return the present place of each bone, a matrix (4, 4); rigid parts move with bones."""
         return {}
 
     def step(self, seconds: float) -> None:
-        """Let time pass; nothing moves by itself."""
+        """Advance in time; here nothing moves."""

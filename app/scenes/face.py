@@ -27,7 +27,7 @@ from .skin_part import SkinPart
 
 BUILT_IN = "built-in"  # name of the included head
 OWN = "own"  # name of a user's head
-LONGEST_STEP = 1.0 / 60.0  # [s] between poses for the simulation, at any rate of a film
+LONGEST_STEP = 1.0 / 60.0  # [s]: longest step of the simulation, at any frame rate
 
 
 class FaceScene(Scene):
@@ -41,7 +41,7 @@ class FaceScene(Scene):
         head: assets.Head | FittedHead | None = None,
         face: Face | None = None,
     ) -> None:
-        """Simulate `head`, by default the built-in one; face: an existing face of this head."""
+        """Simulate `head`, by default the built-in head. face: an existing face of this head."""
         self.head = assets.load("head") if head is None else head
         face = face or Face.of(self.head)
         self.simulation = face.simulation
@@ -63,16 +63,16 @@ class FaceScene(Scene):
         self.values = self.limits.pose(controls.values)
 
     def _framing(self) -> Framing:
-        """The head with its hair; a portrait of it ends below the chin."""
+        """Return points of the head with its hair; a portrait ends below the chin."""
         marks = self.head.vertices[self.landmarks]
         hair = [part.vertices for part in self._parts if part.striation is not None]
         extent = read_only(np.vstack([self.rest_positions, *hair]))
-        lowest = float(marks[8, 1]) - 32.0  # [mm] the chin's landmark, and what is seen below it
+        lowest = float(marks[8, 1]) - 32.0  # [mm] below the chin's landmark
         focus = read_only(0.5 * (marks.min(axis=0) + marks.max(axis=0)))
         return Framing(extent, read_only(extent[extent[:, 1] > lowest]), focus)
 
     def clone(self) -> FaceScene:
-        """A copy of the face at rest, which moves independently; it is made at once."""
+        """Return a copy of the face at rest, which moves independently; copying is fast."""
         return FaceScene(self.head, self.face.clone())
 
     def take(self, values: ControlValues) -> None:
@@ -91,7 +91,7 @@ class FaceScene(Scene):
         self._follow()
 
     def _follow(self) -> None:
-        """Note that the simulation has moved."""
+        """Let skin and parts follow the simulation at their next read."""
         self.face.follow()
         self._are_bent = False
 
@@ -101,7 +101,7 @@ class FaceScene(Scene):
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """Parts, which bend at this call: a picture may show several steps at once."""
+        """The parts in their present shape; computed here, because pictures skip some steps."""
         if not self._are_bent:
             self._are_bent = True
             tongue = self.simulation.anatomy.tongue()
@@ -127,7 +127,7 @@ class FaceScene(Scene):
         return self.simulation.bones.transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """The lowest controls that a control at its limit moves, and how far."""
+        """Return the lowest layer's controls that a control at its limit moves, and how far."""
         controls = self.simulation.controls
         if name not in self._moved_by:
             at_most = self.limits.pose({name: self.limits[name][1]})
@@ -138,14 +138,14 @@ class FaceScene(Scene):
 
 
 def _on_skin(part: Any, rest_positions: Floats64, faces: Any) -> Any:
-    """The part, or a part that follows the skin if it lies on it."""
+    """Return the part, or for a part on the skin a `SkinPart` that follows the skin."""
     if part.name == MASK:
         return Mask(part, rest_positions)
     return part if part.roots is None else SkinPart(part, rest_positions, faces)
 
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
-    """The images on the skin of a head."""
+    """Return the images on the skin of a head."""
     person = head if isinstance(head, Person) else None
     in_tone = None if person is None else person.in_tone
     return SkinImages(
@@ -165,13 +165,13 @@ def _parts_of(
     rest_positions: Floats64,
     faces: Integers32,
 ) -> tuple[Any, ...]:
-    """The parts of a head, some of which can bend, with the hair of the built-in head."""
+    """Return the parts of a head, some of which can bend, with the built-in head's hair."""
     parts = tuple(_on_skin(part, rest_positions, faces) for part in shaded_mouth(head.parts))
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts
 
 
 def _name_of(head: assets.Head | FittedHead) -> str:
-    """The user's name for a head."""
+    """Return the name by which users know a head."""
     if isinstance(head, assets.Head):
         return BUILT_IN
     return head.called or OWN

@@ -1,7 +1,7 @@
-"""The head under a skin: its simulation, and the skin that muscles move.
+"""A head with its simulation, and the skin that the simulation moves.
 
-A head with too many triangles to move in time has a simplified mesh, which is simulated. Its own
-vertices follow this mesh (dense_skin.py).
+If a head has too many triangles to simulate in real time, a simplified mesh is simulated, and the
+head's own vertices follow this mesh (dense_skin.py).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .dense_skin import DenseSkin
 
 @dataclass(frozen=True, eq=False)
 class Face:
-    """A head, its simulation, and its skin if that is denser than the simulated mesh."""
+    """A head, its simulation, and a dense skin if the simulated mesh is simplified."""
 
     head: assets.Head | FittedHead
     simulation: sim.Simulation
@@ -30,7 +30,7 @@ class Face:
 
     @classmethod
     def of(cls, head: assets.Head | FittedHead) -> Face:
-        """A face of this head at rest. Raises ValueError for a head that cannot be simulated."""
+        """Make a face of this head at rest; ValueError for a head that cannot be simulated."""
         simplified = head.simplified if isinstance(head, FittedHead) else None
         simulation = sim.create(simplified or head)
         if simplified is None:
@@ -38,7 +38,7 @@ class Face:
         return cls(head, simulation, DenseSkin(head.vertices, head.faces, simulation))
 
     def clone(self) -> Face:
-        """A copy of the face at rest, which moves independently."""
+        """Return a copy of the face at rest, which moves independently."""
         simulation = self.simulation.clone()
         simulation.reset()
         twin = replace(
@@ -65,7 +65,7 @@ class Face:
     def positions(self) -> Floats64:
         """The present vertices of the skin [mm], shape (V, 3); always the same view.
 
-        A dense skin moves when this is read.
+        A dense skin is computed at this read.
         """
         simulated: Floats64 = self.simulation.positions
         return simulated if self.dense_skin is None else self.dense_skin.positions
@@ -78,19 +78,19 @@ class Face:
 
     @property
     def marked(self) -> Floats64:
-        """The rig's 68 landmarks in their present places [mm], shape (68, 3)."""
+        """The present places of the rig's 68 landmarks [mm], shape (68, 3)."""
         return np.asarray(self.positions[self.head.landmarks])
 
     @cached_property
     def annotation(self) -> Annotation:
-        """The places where annotators of pictures put the 68 points."""
+        """Where human annotators of pictures put the 68 points on this head."""
         return annotation_of(self.head)
 
     def follow(self) -> None:
-        """Let the skin follow the present simulated mesh."""
+        """Let a dense skin follow the present simulated mesh."""
         if self.dense_skin is not None:
             self.dense_skin.follow(self.simulation.positions)
 
     def bone_transforms(self) -> Mapping[str, Floats64]:
-        """Present places of its bones: a (4, 4) matrix for each."""
+        """Return the present place of each bone, a matrix (4, 4)."""
         return self.simulation.bones.transforms()

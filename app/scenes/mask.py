@@ -1,4 +1,4 @@
-"""A mask on a face: it follows both jaws, and yields where skin pushes against it."""
+"""A mask on a face: it follows both jaws, and moves outward where skin pushes against it."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .mouth import BentPart, drawn_attributes
 
 
 class Mask(BentPart):
-    """A mask in front of the mouth, drawn like any other part."""
+    """A mask in front of the mouth, which is drawn like any other part."""
 
     def __init__(self, part: Any, skin: Floats64) -> None:
-        """The mask that lies on a skin at rest, (V, 3)."""
+        """Make a mask that lies on a skin at rest, (V, 3)."""
         super().__init__(**drawn_attributes(part))
         self._rest = part.vertices.astype(np.float64)
         self._shares = part.mandible_shares
         count = SHAPE[0] * SHAPE[1]
         sheet = self._rest[:count]
-        # Smoothly over the pleats.
+        # Smooth normals ignore the pleats.
         normals = vertex_normals(self._rest, part.faces)[:count].reshape(*SHAPE, 3)
         smooth = scipy.ndimage.gaussian_filter(normals, (4.0, 4.0, 0.0), mode="nearest")
         smooth /= np.linalg.norm(smooth, axis=-1, keepdims=True)
@@ -38,9 +38,9 @@ class Mask(BentPart):
         self._held = np.clip(1.0 - distances / reach, 0.0, 1.0)[:, None]
 
     def follow(self, skin: Floats64, cranium: Floats64, mandible: Floats64) -> None:
-        """Lie on the present skin, (V, 3).
+        """Take the shape on the present skin, (V, 3).
 
-        cranium: its place, a matrix (4, 4). mandible: its motion, relative to the cranium.
+        cranium: place of the cranium, a matrix (4, 4). mandible: motion relative to the cranium.
         """
         moved = stretched_walls(self._rest, self._shares, mandible)
         there = (skin - cranium[:3, 3]) @ np.linalg.inv(cranium[:3, :3]).T
@@ -49,7 +49,7 @@ class Mask(BentPart):
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)
         least = np.maximum(pushed, 0.0).reshape(SHAPE)
         push = least
-        for _ in range(40):  # a sheet forms a tent over a push
+        for _ in range(40):  # the sheet forms a tent over pushed places
             around = np.pad(push, 1, mode="edge")
             mean = around[:-2, 1:-1] + around[2:, 1:-1] + around[1:-1, :-2] + around[1:-1, 2:]
             push = np.maximum(least, 0.25 * mean)
@@ -57,9 +57,9 @@ class Mask(BentPart):
         self.take_shape(moved + self._held * away[self._held_by])
 
     def _heights(self, skin: Floats64, sheet: Floats64) -> Floats64:
-        """Heights of skin around each vertex of the sheet above it, (n, 24) [mm].
+        """Return heights of 24 skin vertices above each vertex of the sheet, (n, 24) [mm].
 
-        Skin bends away beside its vertices, like a ball.
+        Beside a vertex, skin is assumed to curve away like a ball.
         """
         apart = skin[self._near] - sheet[:, None]
         outside = (apart * self._outward[:, None]).sum(axis=-1)

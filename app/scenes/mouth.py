@@ -1,5 +1,6 @@
-"""The inside of the mouth: darker toward the back, where less light arrives; a tongue that bends
-out of the dark; and walls that stretch between both jaws.
+"""The inside of the mouth: a tongue that bends, and walls that stretch between both jaws.
+
+Colours are darker toward the back of the mouth, where less light arrives.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
-IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names; the cavity is painted dark
+IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of parts; the cavity is dark already
 
 
 class Gloom(NamedTuple):
     """Loss of colours (sRGB) toward the back of the mouth."""
 
     begins: float  # [mm] behind the front teeth
-    ends: float
-    lost: float  # lost share from there on
-    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # factors of red, green, blue in the rest
+    ends: float  # [mm] behind the front teeth
+    lost: float  # share of light that is lost from `ends` on
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # exponents for red, green and blue
 
 
-# Chosen by eye. Light that reaches a molar has met red flesh before. Little of it is lost: dark
-# molars would look like broken teeth, or like rows that end in front of the corner of the mouth.
+# Chosen by eye. Light on a molar is reddish, because flesh has reflected it. Little light is lost:
+# dark molars would look broken, or missing at the corner of the mouth.
 REDDENED = (0.9, 1.2, 1.25)
 GUMS = Gloom(2.0, 34.0, 0.2)
 TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
@@ -40,7 +41,7 @@ LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
 
 @dataclass(eq=False, kw_only=True)
 class BentPart:
-    """A part that changes its shape; drawn like any other (render/parts.py)."""
+    """A part that changes its shape; it is drawn like any other part (render/parts.py)."""
 
     name: str
     vertices: Floats32
@@ -55,7 +56,7 @@ class BentPart:
     roots: None = None
 
     def take_shape(self, vertices: Floats64) -> None:
-        """Take these vertices, shape (n, 3), and compute their normals."""
+        """Set the vertices, shape (n, 3), and compute their normals."""
         self.vertices = read_only(vertices.astype(np.float32))
         self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
 
@@ -64,12 +65,12 @@ class BentPart:
 class Tongue(BentPart):
     """The tongue, which is darker toward the back."""
 
-    unlit: Floats32  # its colours in full light
+    unlit: Floats32  # colours of the tongue in full light
     front: float  # z of the front teeth [mm]
-    shape: Floats64 | None = None  # the last one
+    shape: Floats64 | None = None  # array of the last `bend`
 
     def bend(self, vertices: Floats64) -> None:
-        """Take another shape (n, 3), with light for its place; do nothing for the same array."""
+        """Set another shape (n, 3) and its colours; do nothing for the same array."""
         if vertices is self.shape:
             return
         self.shape = vertices
@@ -81,15 +82,15 @@ class Tongue(BentPart):
 class MouthWalls(BentPart):
     """The walls of the mouth, which stretch between both jaws."""
 
-    shares: Floats32  # how far each vertex goes with the mandible, shape (n,)
+    shares: Floats32  # share of the mandible's motion for each vertex, shape (n,)
     rest: Floats32
     resting_normals: Floats32
-    jaw: tuple[float, ...] = ()  # its values at the last stretch
+    jaw: tuple[float, ...] = ()  # values of the jaw at the last stretch
 
     def stretch(self, jaw: tuple[float, ...], mandible: Floats64) -> None:
         """Follow the mandible; do nothing for the same values of the jaw.
 
-        mandible: its motion relative to the cranium, a matrix (4, 4).
+        mandible: motion relative to the cranium, a matrix (4, 4).
         """
         if jaw == self.jaw:
             return
@@ -102,21 +103,21 @@ class MouthWalls(BentPart):
 
 
 def drawn_attributes(part: Any) -> dict[str, Any]:
-    """The attributes of a part that are drawn."""
+    """Return the attributes of a part that drawing needs."""
     names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine", "is_enclosed")
     return {name: getattr(part, name) for name in names}
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """The parts; those of the mouth are darker toward the back, and some can bend."""
+    """Darken parts of the mouth toward the back, and make some of them bendable."""
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
     def shaded(part: Any) -> Any:
-        """A darkened part of the mouth; any other part unchanged."""
+        """Return a darkened part of the mouth, or another part unchanged."""
         if part.name == "tongue":
             unlit = read_only(_painted_tongue(part))
             colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
-            drawn = {**drawn_attributes(part), "colours": colours, "shine": 0.42}  # it is wet
+            drawn = {**drawn_attributes(part), "colours": colours, "shine": 0.42}  # wet
             return Tongue(**drawn, unlit=unlit, front=float(front))
         if part.mandible_shares is not None and part.name != MASK:
             shares = part.mandible_shares
@@ -133,7 +134,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
 
 
 def _painted_tongue(part: Any) -> Floats32:
-    """The colours of a tongue, (n, 3): red edges, a pale coat, a dark groove; chosen by eye."""
+    """Paint a tongue, (n, 3): red edges, a pale coat, a dark groove; chosen by eye."""
     vertices = part.vertices.astype(np.float64)
     middle = vertices[:, 0].mean()
     beside = np.abs(vertices[:, 0] - middle)
@@ -159,7 +160,7 @@ def _painted_tongue(part: Any) -> Floats32:
 def _shaded(
     points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom
 ) -> Floats32:
-    """Colours (n, 3), darkened behind the front teeth."""
+    """Darken colours (n, 3) behind the front teeth."""
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
     share = np.clip(behind, 0.0, 1.0)
     light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)

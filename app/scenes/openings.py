@@ -1,7 +1,7 @@
-"""The present openings of a face, between lids and between lips.
+"""The present openings of a face between the lids and between the lips.
 
-Light passes through them to the eyeballs and into the mouth. Their rims run through the rig's
-landmarks: a lid is the cubic curve through its four.
+Light passes through an opening to an eyeball or into the mouth. Rims run through the rig's
+landmarks: the rim of a lid is the cubic curve through its four landmarks.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 LIPS = slice(60, 68)  # landmarks of the inner edges of the lips
-LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # landmarks by the eyeball's bone
+LIDS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}  # bone of the eyeball -> landmarks
 BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # beginnings of names of parts
 
 
 class Rim(NamedTuple):
-    """The rim of an opening, shape (n, 3) [mm]: the upper half first, clockwise from outside.
+    """The rim of an opening.
 
-    is_filled: whether the part in it comes up to the rim.
+    points: shape (n, 3) [mm], the upper half first, clockwise as seen from outside.
+    is_filled: whether the part in the opening reaches the rim.
     """
 
     points: Floats64
@@ -29,9 +30,9 @@ class Rim(NamedTuple):
 
 
 def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
-    """The openings by the bones of the eyeballs, and "mouth"; landmarks: present, shape (68, 3).
+    """Return the openings by the eyeballs' bones and "mouth", from present landmarks (68, 3).
 
-    point_count: number of points of each rim, even.
+    point_count: even number of points of each rim.
     """
     of_lids = _through(6, point_count)
     of_lips = _through(8, point_count)
@@ -40,7 +41,7 @@ def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
 
 
 def opening_before(name: str, bone: str) -> str:
-    """The opening through which a part is visible; empty for other parts."""
+    """Name the opening through which a part is visible; empty for other parts."""
     if name.startswith(BEHIND_LIPS):
         return "mouth"
     return bone if name.startswith("eyeball") else ""
@@ -48,9 +49,9 @@ def opening_before(name: str, bone: str) -> str:
 
 @cache
 def _through(count: int, point_count: int) -> Floats64:
-    """Weights of an opening's landmarks in the points of its rim, (point_count, count).
+    """Return weights of an opening's landmarks for the points of its rim, (point_count, count).
 
-    Both halves begin and end in its corners: each is the polynomial through its landmarks.
+    Each half of the rim is the polynomial through its landmarks, from corner to corner.
     """
     of_half = count // 2
     knots = np.linspace(0.0, 1.0, of_half + 1)

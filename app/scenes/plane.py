@@ -25,8 +25,8 @@ class PlaneScene(Scene):
     """
 
     name = "plane"
-    WAVES = 1.5  # wavelengths per length of the plane (chosen by eye, like HEIGHT)
-    HEIGHT = 0.2  # crest above the middle, in lengths of the plane
+    WAVES = 1.5  # wavelengths per length of the plane (chosen by eye, as HEIGHT)
+    HEIGHT = 0.2  # height of crests, relative to the plane's length
 
     groups = MappingProxyType({"Wave": ("amplitude", "phase")})
     limits = Limits({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
@@ -45,7 +45,7 @@ class PlaneScene(Scene):
         self._positions[:] = self.waved(self.rest_positions)[0]
 
     def waved(self, points: Floats64) -> tuple[Floats64, Floats64]:
-        """Present places of points of the plane z = 0, and the wave's normals there, (n, 3)."""
+        """Return present places of points of the plane z = 0, and normals there, (n, 3) each."""
         height = self.values["amplitude"] * self.HEIGHT * self._length
         frequency = 2.0 * np.pi * self.WAVES / self._length
         along = points.sum(axis=1) / np.sqrt(2.0)

@@ -10,10 +10,10 @@ from .drawable import Drawable, Framing
 
 
 class Scene(Drawable):
-    """Anything that moves the vertices of one triangle mesh.
+    """A mesh whose vertices are moved by controls.
 
-    groups: all controls, by headings of a panel. values: the set value of each control.
-    actions: effects of controls, if known. expressions: whole faces, without one-sided ones.
+    groups: heading of a panel -> controls. values: the set value of each control.
+    actions: control -> its effect in words, if known. expressions: controls that show a whole face.
     """
 
     framing: Framing
@@ -24,7 +24,7 @@ class Scene(Drawable):
     expressions: tuple[str, ...] = ()
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        """Set controls, each cut off at its limits; unnamed ones become 0.
+        """Set controls, each clamped to its limits; all other controls become 0.
 
         Raises UserError for an unknown name.
         """
@@ -39,8 +39,9 @@ class Scene(Drawable):
         self.values = self.limits.pose({})
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """The lowest controls that a control moves: itself, or targets of a layer's control.
+        """Return the controls of the lowest layer that a control moves, and their greatest changes.
 
-        With each, the amount by which it changes when the control is at its most, without a sign.
+        A control of the lowest layer moves only itself. Changes are absolute, for the control at
+        its highest value.
         """
         return {name: 1.0}

@@ -1,7 +1,7 @@
-"""Parts on the skin: lashes, and the tears along the lids, which move with it.
+"""Parts that move with the skin: lashes, and the tears along the lids.
 
-All vertices of a root keep the root's place over its nearest triangle at rest, and turn with the
-skin there (refine.Embedding).
+Vertices of a part grow from roots. A root keeps its place over the nearest triangle at rest, and
+its vertices turn with the skin there (refine.Embedding).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from risorius.geometry.read_only import read_only
 
 
 class SkinPart:
-    """A part that changes its shape with the skin; drawn like any other (render/parts.py)."""
+    """A part that follows the skin; it is drawn like any other part (render/parts.py)."""
 
     is_enclosed = True
     striation = None
@@ -26,8 +26,10 @@ class SkinPart:
     normals: Floats32
 
     def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
-        """A part with `roots`, on the skin at rest, (V, 3) with triangles (F, 3)."""
-        from risorius.refine import Embedding  # lists of controls do not need it
+        """Bind a part with `roots` to the skin at rest, (V, 3), with triangles (F, 3)."""
+        from risorius.refine import (
+            Embedding,
+        )  # lists of controls do not need it
 
         self.name = part.name
         self.bone = part.bone
@@ -39,15 +41,15 @@ class SkinPart:
         self.normals = part.normals
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
-        roots, root_of = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
-        # Files have triangles without an area, which cannot carry roots.
-        least_area = 1e-6  # [mm2], doubled
+        roots, root_of = np.unique(part.roots, return_inverse=True)  # number of each vertex's root
+        # Some files have triangles without an area, which cannot carry roots.
+        least_area = 1e-6  # doubled area [mm2]
         faces = faces[np.linalg.norm(cross_products(skin, faces), axis=1) > least_area]
         # Upright parts point out of the skin; flat parts have the skin's normal.
         ahead = np.zeros((len(roots), 3))
         np.add.at(ahead, root_of, rest - rest[roots][root_of] + 1e-3 * normals)
         feet = nearest_on(rest[roots], unit_vectors(ahead), skin, faces)
-        # Only the triangles around roots matter, also for the normals there.
+        # Only the triangles near roots are needed, also for normals.
         is_around = np.isin(faces, feet.corners).any(axis=1)
         self._near, around = np.unique(faces[is_around], return_inverse=True)  # vertices of skin
         number = np.cumsum(is_around) - 1  # numbers of triangles, among those around
@@ -61,7 +63,7 @@ class SkinPart:
         )
 
     def follow(self, skin: Floats64, bone: Floats64) -> None:
-        """Stand on the present skin, (V, 3), relative to the part's bone, a matrix (4, 4)."""
+        """Follow the present skin, (V, 3), relative to the part's bone, a matrix (4, 4)."""
         there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         moved = self._embedding.evaluate(there)
         assert moved.normals is not None
