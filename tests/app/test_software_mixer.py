@@ -36,7 +36,7 @@ def share_off(studio, monkeypatch):
     """A function of camera, style and anatomy, for the share of visibly different pixels."""
 
     def measured(camera="front", style=None, anatomy=None):
-        """Shares of pixels that differ by over 8 levels: between both mixers, and by smoothing."""
+        """Shares of pixels over 8 levels apart: of both mixers, and with and without smoothing."""
         view = camera if isinstance(camera, render.OrbitCamera) else None
         studio.camera = view or camera_for(studio.scene, camera)
         style = style or studio.options.style

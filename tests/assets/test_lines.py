@@ -84,7 +84,7 @@ def test_patterns_have_their_published_shares():
 
 
 def test_a_number_has_the_same_lines_and_map_every_time():
-    """A number always gives the same lines and map, other numbers others; shared maps stay."""
+    """Each number always has its own lines and map; maps shared between persons never change."""
     known = load("head").wrinkles
     before = known.map.copy()
     lines = [sample_identity(seed).lines for seed in (7, 7, 8)]
