@@ -14,6 +14,7 @@ from typing import Any
 from ..errors import UserError
 
 STATIC = "none"  # the refiner that does not change the mesh
+STATIC_LABEL = "static"  # its name in pictures
 CHANGED = ", changed"  # suffix of the name of a preset or refiner with options of a user
 FIRST_PRESET = "smooth"  # the default
 PAPERS_PRESET = "paper"
@@ -111,7 +112,7 @@ class Refinement:
     @property
     def label(self) -> str:
         """The name of the refinement under a picture."""
-        name = "static" if self.refiner == STATIC else self.refiner or self.preset
+        name = STATIC_LABEL if self.refiner == STATIC else self.refiner or self.preset
         return f"{name}{CHANGED}" if self.options else name
 
 

@@ -108,6 +108,10 @@ def test_any_look_can_be_the_left_one(viewer):
     assert [each.drawn.label for each in sides] == ["paper", "smooth"]
     size = max(viewer.face.view.viewport[3] / 36.0, 15.0)
     assert np.array_equal(viewer.surface.labels[0][2], plate("paper\n2030 triangles", size))
+    in_panel(viewer, ("Beside", "static"))  # as the picture calls it
+    assert viewer.settings.display.beside == "none"
+    assert until(viewer, lambda: viewer.schedule.is_idle)
+    assert np.array_equal(viewer.surface.labels[0][2], plate("static\n2030 triangles", size))
 
 
 def test_the_refiner_on_the_card_is_one_of_the_list(viewer):

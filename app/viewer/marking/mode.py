@@ -50,7 +50,7 @@ class MarkingMode:
         self.painter = Painter(stage, self.view, messages)
         self.mouse = MarkingMouse(self.view, stage, marking, messages)
         own = self._commands()
-        sizes = ("Larger text", "Smaller text", "Usual size")
+        sizes = ("Larger text", "Smaller text", "Default size")
         shared_commands = ("Quit", "Dark theme", *sizes, "Manual")
         shared = [each for each in others if each.label in shared_commands]
         self.commands = (*own, *shared)

@@ -14,7 +14,7 @@ from risorius import refine, render
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
-from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
+from ...refining.presets import PRESETS, STATIC, STATIC_LABEL, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, OF, can_detail, options_of
 from ...text import counted
 from ..context import ApplicationContext
@@ -32,7 +32,7 @@ HINTS = {
     "itself where the mesh is large",
     "Compare": "the simulated mesh or a look at the left, refined at the right, under one camera: "
     "wipe ([Compare: wipe]) or side by side ([Compare: side by side])",
-    "Beside": "at the left of a comparison: a look, or none, the simulated mesh as it is",
+    "Beside": "at the left of a comparison: static, the simulated mesh as it is, or a look",
     "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
     "Wires of splits": "outlines of simulated triangles that are split more than at rest",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
@@ -109,7 +109,10 @@ class MechanismPanel:
                 self._draw_option(name, option)
         self._rows.pick("Compare", COMPARISONS)
         if display.compare != "off":
-            self._rows.pick("Beside", (STATIC, *PRESETS))
+            looks = {STATIC_LABEL: STATIC} | {look: look for look in PRESETS}
+            beside = STATIC_LABEL if display.beside == STATIC else display.beside
+            put = lambda label: setattr(display, "beside", looks[label])  # noqa: E731
+            self._rows.put("Beside", beside, tuple(looks), put)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count

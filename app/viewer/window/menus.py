@@ -233,7 +233,7 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
         setting("Dark theme", "F2", "theme", "dark", "light", begins_section=True),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
-        command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
+        command("Default size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
     )
 
 
