@@ -1,4 +1,4 @@
-"""Refiners to compare with: the unchanged mesh, and Loop subdivision of the whole mesh.
+"""Refiners for comparison: the unchanged mesh, and Loop subdivision of the whole mesh.
 
 *None* splits nothing: it returns the mesh itself in the form of a refined mesh.
 
@@ -57,7 +57,7 @@ class Level:
         self.points = points
         self.normals = normals
         self._scheme = LoopScheme()
-        positions = np.zeros((0, 3))  # no pass of this reads them
+        positions = np.zeros((0, 3))  # no pass of this refiner reads them
         self._scheme.bind(connectivity, positions, normals)
         frame = buffers_for(connectivity, positions, points, normals)
         self._frame = split_everywhere(frame, connectivity.vertex_count)
@@ -220,7 +220,7 @@ def _with_middles(values: Floats32, mesh: Connectivity) -> Floats32:
 
 
 def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Four triangles for each triangle: three at its corners, and one of its middle points.
+    """Return four triangles for each triangle: three at its corners, and one between its middles.
 
     `corners`: of any kind, shape (F, 3, ..); `middles`: of the edges. Shape (4 F, 3, ..).
     """

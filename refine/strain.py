@@ -1,4 +1,4 @@
-"""Shortening of the skin, from rest and deformed positions alone.
+"""Shortening of the skin, measured from rest and deformed positions.
 
 *Shortening* is the relative loss of length since rest along given directions; wrinkles follow it.
 Wrinkles keep their places, so the directions are given at rest, d at each vertex, and only the
@@ -11,8 +11,8 @@ of the triangle's edges,
 
     |F d|^2 = - b0 b1 l01^2 - b1 b2 l12^2 - b2 b0 l20^2
 
-so neither a rigid motion nor a bend counts, and the mean over the triangles around a vertex,
-weighted by area, is a sum with weights that never change. At rest it is 0 to the last bit.
+so neither a rigid motion nor a bend counts. The area-weighted mean over the triangles around a
+vertex is a sum with constant weights. At rest the shortening is 0 to the last bit.
 
 Not in the paper.
 """
@@ -30,7 +30,7 @@ LEAST_FLATNESS = 1e-6
 
 
 class Shortening:
-    """Measures the skin of one mesh along directions that are known at rest.
+    """Measures the shortening of one mesh along directions given at rest.
 
     shortening = refine.Shortening(faces, rest_positions, directions)
     amounts = shortening.measure(positions)
@@ -39,7 +39,7 @@ class Shortening:
     def __init__(
         self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike, directions: npt.ArrayLike
     ) -> None:
-        """Learn the mesh at rest: `faces`, (F, 3), `rest_positions`, (V, 3), `directions`.
+        """Bind to the mesh at rest: `faces`, (F, 3), `rest_positions`, (V, 3), `directions`.
 
         `directions`: k for each vertex, of any length, shape (V, k, 3). Their parts normal to the
         skin are left out; a zero direction has no shortening. Triangles without area and vertices
@@ -64,7 +64,7 @@ class Shortening:
         _square_lengths(rest, self._faces, self._rest)
 
     def measure(self, positions: npt.NDArray[np.floating]) -> Floats32:
-        """Loss of length of each vertex along its directions, up to 1, shape (V, k).
+        """Return the relative loss of length at each vertex and direction, up to 1, (V, k).
 
         0 means no loss, below 0 a gain. `positions`: shape (V, 3), any float type. The result is
         overwritten by the next call. Raises ValueError for another shape and for positions that are

@@ -1,15 +1,15 @@
-"""The paper's refiner on the graphics card: the refiner `kahler-gl`, to the bits of `kahler`.
+"""The paper's refiner on the graphics card, `kahler-gl`: its results have the bits of `kahler`.
 
 Kähler, Haber, Seidel, "Dynamically refining animated triangle meshes for rendering", The Visual
-Computer 2003. Positions go up in every frame, six passes of compute shaders turn them into
-triangles in the memory that is drawn, and nothing comes back unless a caller reads it.
+Computer 2003. Positions are uploaded in every frame, and six passes of compute shaders turn them
+into triangles in the memory that is drawn. Nothing is read back unless a caller reads it.
 
     refiner = refine.create("kahler-gl", faces, rest_positions)
     mesh = refiner.refine(positions)          # arrays are fetched when they are read
 
 It joins like any plug-in, by an entry point of the group `risorius.refiners`, and needs
-`risorius.refine`, numpy and moderngl. OpenGL 4.3 or newer runs it, in software too. Where there is
-none, the log says so once, and the processor does the same by `kahler`.
+`risorius.refine`, numpy and moderngl. It needs OpenGL 4.3 or newer, which may be a software driver.
+Without it, one warning is logged, and the refiner `kahler` computes the same on the processor.
 
     tables.py     arrays that are handed over once per mesh
     shaders/      the passes; common.glsl is part of each

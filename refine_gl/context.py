@@ -1,8 +1,8 @@
-"""OpenGL for callers that bring none: a context of this process, in a thread of its own.
+"""An OpenGL context of this process, in a separate thread, for callers without a context.
 
-A context is current in one thread, and a thread has one current context. So ours gets its own
-thread, and a caller's current context stays current, whether from EGL, GLX or a window library. To
-pass a call to the thread and wait takes tens of microseconds; frames that are read back take
+A context is current in one thread, and a thread has one current context. So our context has a
+separate thread, and a caller's current context stays current, whether from EGL, GLX or a window
+library. Passing a call to the thread takes tens of microseconds; frames that are read back take
 longer.
 """
 
@@ -38,7 +38,7 @@ class OwnContext:
             raise GpuError(f"no OpenGL 4.3 without a window ({reason})") from None
 
     def run(self, call: Callable[..., Result], *arguments: Any) -> Result:
-        """Call something where the context is current, and wait for its result."""
+        """Call a function in the thread of the context, and wait for its result."""
         return self._thread.submit(call, *arguments).result()
 
 

@@ -9,9 +9,9 @@ The paper's rule takes six:
     place       a wedge, an attribute edge, a triangle: rows and subtriangles       (4.2, 4.3)
     quarters    an attribute edge that is split twice: its second level             (4.2)
 
-Cubic edges and the normals of their surface have others before and after `mark` (rules.py). Prefix
-sums number points and subtriangles in the order of `refine.Kahler`. A barrier follows each pass.
-The processor does not learn the numbers of results: the draw command holds them.
+Cubic edges and the normals of their surface have further passes before and after `mark` (rules.py).
+Prefix sums number points and subtriangles in the order of `refine.Kahler`. A barrier follows each
+pass. The numbers of results are not read back: they are in the draw command.
 """
 
 from importlib.resources import files
@@ -64,7 +64,7 @@ class Frames:
     def run(self, positions: Floats64, metric: Floats32 | None, stream: GpuStream) -> None:
         """Refine a frame into the buffers of a stream.
 
-        `positions`: shape (V, 3); `metric`: that of the processor, shape (E,).
+        `positions`: shape (V, 3); `metric`: measured by the processor, shape (E,).
         """
         self._frame += 1
         self._bind()
@@ -91,7 +91,7 @@ class Frames:
                 self._mesh.write(np.ascontiguousarray(values, np.float32), offset=offset)
 
     def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned32:
-        """The first numbers, or vectors, that passes have written under a name, as numbers.
+        """Return the first `count` numbers or vectors of a named result of the passes.
 
         This waits for the frame.
         """
@@ -159,7 +159,7 @@ def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:
 
 
 def _block(tables: Tables) -> bytes:
-    """The uniform block, in std140: numbers of four bytes, in whole vectors of four."""
+    """Return the uniform block in std140: numbers of four bytes, in whole vectors of four."""
     limits = np.array(list(tables.limits.values()), np.float32).view(np.uint32)
     words = np.concatenate([limits, np.array(list(tables.sizes.values()), np.uint32)])
     return np.pad(words, (0, -len(words) % 4)).tobytes()

@@ -20,7 +20,7 @@ Columns = tuple[Floats32 | None, Mapping[str, Floats32]]
 
 
 class GpuBuffers:
-    """A stream for results that are not drawn; its buffers are like a `refine.GpuStream`'s."""
+    """A stream for results that are not drawn, with the buffers of a `refine.GpuStream`."""
 
     def __init__(
         self, gl: moderngl.Context, columns: int, vertex_capacity: int, triangle_capacity: int
@@ -106,7 +106,7 @@ class GpuMesh:
         return RefinedMesh, (*arrays, dict(self.attributes))
 
     def _fetched(self, name: str, count: int) -> Unsigned32:
-        """The first numbers of a buffer, in writable memory of their own."""
+        """Return the first numbers of a buffer as a writable copy."""
         words = np.empty(count, np.uint32)
         if count:
             self._run(getattr(self._stream, name).read_into, words, words.nbytes)

@@ -1,8 +1,8 @@
 """The refiner `kahler-gl`: the paper's, frame by frame on the graphics card.
 
 Kähler, Haber, Seidel 2003, sections 4.1 to 4.4, as `refine.Kahler` does them; frames.py has the
-passes. Given a stream on the card (`refine.GpuStream`), it writes there, in the caller's context,
-and fetches nothing. Given arrays, or no stream, it uses a context of its own.
+passes. With a stream on the card (`refine.GpuStream`), it writes into that stream, in the caller's
+context, and fetches nothing. With arrays, or without a stream, it uses its own context.
 """
 
 import functools
@@ -75,8 +75,8 @@ def create_kahler_gl(
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `refine.create` takes them.
       Cubic edges with creases are refined by the processor.
 
-    Where there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader,
-    the log says so once, and the refiner `kahler` with the same options is returned.
+    If there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader, one
+    warning is logged, and the refiner `kahler` with the same options is returned.
     """
     if blend and (coherent or scheme == "loop"):
         raise ValueError('blend=True needs scheme="cubic" in kahler-gl, and coherent=False')

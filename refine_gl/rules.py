@@ -1,8 +1,8 @@
 """The settings of `kahler-gl`, and the passes, switches and numbers of its shaders.
 
 Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which films and
-the window show. The card decides the criteria `normal`, `rest` and `displacement`. The processor
-measures others, and uploads four bytes an edge in every frame.
+the window show. The card evaluates the criteria `normal`, `rest` and `displacement`. The processor
+measures all other criteria, and uploads four bytes per edge in every frame.
 """
 
 from collections.abc import Mapping
@@ -62,7 +62,7 @@ class Rules:
         rest_normals: Floats32,
         settings: Settings,
     ) -> None:
-        """Raise ValueError for criteria that the card does not have."""
+        """Bind the settings; raises ValueError for options that the card does not have."""
         self._mesh = mesh
         self._rest = rest_positions
         self.scheme, self.criterion, self.blends, self.coherent = settings

@@ -1,8 +1,8 @@
-"""The arrays that shaders get once per mesh: indices and weights, one after another.
+"""The arrays that are uploaded once per mesh: indices and weights, one after another.
 
-A storage buffer is one array, and OpenGL 4.3 promises a pass no more than eight of them. So all
-arrays lie in one buffer, and a shader reads `faces(k)`, a macro that adds the place where `faces`
-begins. A uniform block has these places and the lengths of all arrays.
+A storage buffer is one array, and OpenGL 4.3 guarantees a pass only eight of them. So all arrays
+lie in one buffer, and a shader reads `faces(k)`, a macro that adds the place where `faces` begins.
+A uniform block has these places and the lengths of all arrays.
 """
 
 from typing import NamedTuple
@@ -15,11 +15,11 @@ from risorius.refine import Connectivity, port
 from .rules import Arrays, Rules
 
 GROUP = 256
-"""Threads of a group, which sum together: OpenGL 4.3 promises 1024."""
+"""Threads of a group for prefix sums: OpenGL 4.3 guarantees 1024."""
 
 
 class Tables(NamedTuple):
-    """One mesh as shaders see it."""
+    """The data of one mesh for the shaders."""
 
     words: Unsigned32
     """All its arrays, one after another; floats are stored by their bits."""
@@ -30,9 +30,9 @@ class Tables(NamedTuple):
     head: str
     """The first lines of shaders: switches, the uniform block, a macro for each array."""
     field_count: int
-    """Number of vectors that passes share."""
+    """Number of vectors in the buffer that passes share."""
     work_count: int
-    """Number of numbers that passes share."""
+    """Number of numbers in the buffer that passes share."""
 
 
 def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:

@@ -1,4 +1,4 @@
-"""The present parts under the skin of a face, to draw and to measure; they do not move the face."""
+"""The parts under the skin of a face at present, for drawing and measuring; they do not move it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .state import State
 
 
 class Anatomy:
-    """Contracted muscles, the tongue, and the depth of the skin in the parts under it."""
+    """Contracted muscles, the tongue, and how deep skin penetrates the parts under it."""
 
     def __init__(
         self, model: FaceModel, state: State, controls: Controls, bones: Bones, drive: MuscleDrive
@@ -30,10 +30,10 @@ class Anatomy:
             self._resting_tongue.flags.writeable = False
 
     def tongue(self) -> Floats64 | None:
-        """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
+        """Vertices of the part "tongue" now, shape (T, 3); None for a head without a tongue.
 
-        Their space is that of the mandible: the matrix of this bone puts them in their place. A
-        tongue at rest is the same array each time.
+        They are in the space of the mandible: multiply them by the matrix of this bone. A tongue at
+        rest is always the same array.
         """
         model = self._model
         if model.tongue is None:
@@ -68,8 +68,8 @@ class Anatomy:
     def penetrations(self) -> dict[str, float]:
         """Greatest depth of skin in the other lip, eyeballs and teeth, minus that at rest [mm].
 
-        Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
-        eyeball), "teeth".
+        Names: "lips" (depth in the other lip, beyond the overlap of sealed lips), "lids" (depth in
+        an eyeball), "teeth".
         """
         skin = self._model.skin
         x = self._state.x

@@ -1,4 +1,4 @@
-"""The bones of one face in motion: the controls move them, and they move the skin."""
+"""The moving bones of one face: controls move the bones, and the bones move the skin."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .skull import HEAD_CONTROLS, REST
 
 
 class Bones:
-    """Cranium, mandible and eyeballs; only those that moved are computed again.
+    """Cranium, mandible and eyeballs; only bones that moved are computed again.
 
     mandible_weight, head_weight: how far each vertex follows the mandible (given or guessed) and
         the head's pose (fades to 0 down the neck), 0 to 1, shape (V,).
-    jaw: its present values: open, forward, sideways.
-    lips_closed: how far lips are now kept together over an open jaw, 0 to 1.
-    weight: the mandible's weights at that value of lips_closed, shape (V,).
+    jaw: present values of the jaw: open, forward, sideways. lips_closed: how far lips are now kept
+    together over an open jaw, 0 to 1. weight: the mandible's weights for this value of lips_closed,
+    shape (V,).
     """
 
     def __init__(self, model: FaceModel, controls: Controls) -> None:

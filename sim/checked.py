@@ -1,7 +1,7 @@
 """Checks of arguments from callers: numbers, arrays and names. A wrong one raises ValueError.
 
-Every message names the argument, its value, and the allowed values. numpy alone would take strings
-for numbers, cut 0.7 down to vertex 0, and raise one of three other errors.
+Every message names the argument, its value, and the allowed values. numpy alone would accept
+strings as numbers, truncate 0.7 to vertex 0, and raise other errors.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
     if not _fits(array, shape):
         raise ValueError(f"{what}: shape was {array.shape}, must be {wanted} and finite")
-    with np.errstate(all="ignore"):  # numbers of a wider type may become infinite
+    with np.errstate(all="ignore"):  # numbers of a wider type may overflow to infinity
         result: Floats64 = np.array(array, dtype=np.float64, order="C")
     if not np.isfinite(result).all():
         raise ValueError(f"{what}: must all be finite numbers, but some are NaN or infinite")

@@ -1,12 +1,12 @@
 """Contact of skin with the eyeballs and the other lip, and the seal that keeps closed lips closed.
 
-Each vertex on the edge of either lip is paired with a point on the edge of the other lip. A mesh
-may have more vertices on one lip; a vertex without a pair would stand out like a tooth of a saw. A
-spring holds each pair together as long as nothing opens the mouth (moist lips stick; without the
-spring a smile parts them by a millimetre). The spring must be stiffer than any muscle, or teeth
-show through closed lips. So it is integrated implicitly, pair by pair, and does not shorten the
-time step. Pairs and eyeballs are also hard constraints: after each substep positions are projected
-out and the approaching part of the velocity is removed.
+Each vertex on the edge of either lip is paired with a point on the edge of the other lip. Points
+are used because a mesh may have more vertices on one lip; a vertex without a pair would make the
+lip line jagged. A spring holds each pair together as long as nothing opens the mouth (moist lips
+stick; without the spring a smile parts them by a millimetre). The spring must be stiffer than any
+muscle, or teeth show through closed lips. So it is integrated implicitly, pair by pair, and does
+not shorten the time step. Pairs and eyeballs are also hard constraints: after each substep
+positions are projected out and the approaching part of the velocity is removed.
 
 Source: own; contact by projection after Müller et al. 2007, "Position based dynamics", section 3.
 Differs from it: all pairs are solved at once from one state and averaged (Jacobi), which keeps a
@@ -24,10 +24,10 @@ from .landmarks import mouth_line, polyline_distance
 from .skull import Eyeball
 from .surface import SkinSurface
 
-PAIR_GAP = 2.2  # mm: lips further apart at rest form no pair; their red must not fold on the line
+PAIR_GAP = 2.2  # mm: lips further apart at rest form no pair, or their red would fold at the line
 PRESSED_OVERLAP = 1.8  # mm of overlap of sealed lips when muscles act: smoothing thins a folded lip
 SLIDE_DISTANCE = 3.0  # mm that the lower lip moves forward or in before it passes the upper one
-EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
+EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
 
 
 class LipPairs(NamedTuple):
@@ -52,7 +52,7 @@ class LipPairs(NamedTuple):
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
         """Greatest depth of crossing lips at positions (V, 3), beyond `pressed` and rest [mm].
 
-        A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
+        A lower lip in front of the upper lip, or rolled in behind it (substep.py), does not count.
         """
         forward = self.apart(x - rest)[:, 2]
         crossing = self.least_gap - pressed + self.below * self.apart(x)[:, 1]
@@ -69,8 +69,8 @@ class Grip(NamedTuple):
     def of(cls, strength: float, activity: float) -> Grip:
         """Grip of a seal with `strength` 0 (broken) .. 1, under muscles with `activity` 0 .. 1.
 
-        At full strength it is stronger than every muscle. It must weaken early, or the mouth would
-        pop open.
+        At full strength the seal is stronger than every muscle. It must weaken early, or the mouth
+        would open abruptly.
         """
         unbroken_seal = 100.0  # factor of the rig's seal in a closed mouth: gaps below 0.1 mm
         stiffness = strength**5 / (1.0 - strength + 1.0 / unbroken_seal)
@@ -91,7 +91,7 @@ def pair_lips(
     at_edge = polyline_distance(x, line) < lip_edge
     width = abs(line[-1, 0] - line[0, 0])
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * width
-    own_side_level = 0.1  # of the lip side field: lips are one nearer to the corner
+    own_side_level = 0.1  # value of the lip side field: nearer to the corner the lips are one
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
     pairs = []

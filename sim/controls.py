@@ -1,15 +1,14 @@
-"""Controls: the named values that a caller sets, and the way in which face and muscles follow.
+"""Controls: the named values that a caller sets, and the activations that follow them.
 
 The lowest controls are muscles, jaw and gaze. Controls of the layers above (layers.py) are set in
-the same way and add to them. The `wanted` value of a lowest control is this sum, clamped to its
-limits.
+the same way, and add shares to the lowest controls. The `wanted` value of a lowest control is the
+sum of its own value and these shares, clamped to its limits.
 
-A muscle does not jump to a new activation: each control follows its value as a critically damped
-oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly for every tick,
-so it is stable for any length and does not depend on the frame rate.
+A muscle does not reach a new activation at once: each control follows its wanted value as a
+critically damped oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly
+for every tick, so it is stable for any tick length and independent of the frame rate.
 
-Source: time constants of facial muscle, measured on the model (45 rad/s gives t50 = 37 ms, t90 =
-86 ms).
+Source: time constants of facial muscle; on this model 45 rad/s gives t50 = 37 ms and t90 = 86 ms.
 """
 
 from __future__ import annotations
@@ -47,12 +46,12 @@ class Control:
 
 
 class Controls:
-    """All inputs of a face: the values that are set, and the activations that follow them.
+    """All inputs of a face: the values that a caller sets, and the activations that follow them.
 
-    A value beyond its limits raises ValueError, so a caller clamps such values before. Only sums
-    are clamped here.
+    A value beyond its limits raises ValueError; only sums are clamped here.
 
-    The first C of all N controls are the lowest; only they have a wanted sum and an activation.
+    The first C of all N controls are the lowest controls; only these have a wanted sum and an
+    activation.
     """
 
     names: tuple[str, ...]
@@ -60,11 +59,11 @@ class Controls:
     lowest: tuple[str, ...]
     """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
     layers: Mapping[str, tuple[str, ...]]
-    """Names of the controls above, by the title of their layer, from the bottom up."""
+    """Names of the controls of the layers above, by the title of the layer, from the bottom up."""
     limits: Mapping[str, tuple[float, float]]
     """Least and greatest value of each control, those of the layers included."""
     groups: Mapping[str, tuple[str, ...]]
-    """Control names by their title in a panel, layers last."""
+    """Control names by the title under which a panel lists them, layers last."""
     actions: Mapping[str, str]
     """The effect of each control, in words; "" where its file has none."""
     tables: Layers
@@ -97,7 +96,7 @@ class Controls:
         self._rate = np.array([control.rate for control in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
         floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
-        self._floored = np.flatnonzero(floors.any(axis=1))  # only few rows of layers have any
+        self._floored = np.flatnonzero(floors.any(axis=1))  # only few rows of layers have floors
         self._floors = floors[self._floored]
         self._share_of: list[tuple[int, int]] = []
         for name, whole in layers.share_of.items():
@@ -113,7 +112,7 @@ class Controls:
     def place(self, name: str) -> int:
         """Place of a control among `names`; for a lowest control also in `wanted` and `activation`.
 
-        Raises ValueError, which offers similar names.
+        Raises ValueError with similar names.
         """
         if not isinstance(name, str):
             raise ValueError(f"control: was {quoted(name)}, must be a name; see .limits for all")
@@ -125,7 +124,7 @@ class Controls:
 
     @property
     def values(self) -> dict[str, float]:
-        """The last value of each control that was set, those of the layers included.
+        """Return the last value of each control that was set, including controls of the layers.
 
         The face follows within about 0.1 s.
         """
@@ -147,11 +146,11 @@ class Controls:
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several controls; if `set` would refuse one, none is set."""
+        """Set several controls, or none if `set` would refuse one of them."""
         self._set_over(self._values, values)
 
     def pose(self, values: Mapping[str, float]) -> None:
-        """Set several controls, all others to zero; if `set` would refuse one, none is set."""
+        """Set several controls, and all others to zero; or none if `set` would refuse one."""
         self._set_over(np.zeros_like(self._values), values)
 
     def _set_over(self, others: Floats64, values: Mapping[str, float]) -> None:
@@ -163,7 +162,7 @@ class Controls:
         self._take(wanted)
 
     def take(self, values: npt.ArrayLike) -> None:
-        """Set all controls, in the order of `names`, shape (N,); if one is wrong, none is set."""
+        """Set all controls to values in the order of `names`, shape (N,); none if one is wrong."""
         self._take(numbers("values", values, self._values.shape))
 
     def _take(self, wanted: Floats64) -> None:
@@ -200,11 +199,11 @@ class Controls:
         return np.clip(sums, self._low, self._high, out=sums)
 
     def advance(self, dt: float) -> None:
-        """Move activations toward their values for `dt` [s]: exact critically damped motion."""
+        """Move activations toward the wanted values for `dt` [s], with exact critical damping."""
         follow(self._wanted, self._activation, self._speed, self._rate, dt)
 
     def arrive(self) -> None:
-        """Set activations to their values at once."""
+        """Set activations to the wanted values at once."""
         self._activation[:] = self._wanted
         self._speed[:] = 0.0
 
@@ -216,22 +215,22 @@ class Controls:
         self._speed[:] = other._speed
 
     def reset(self) -> None:
-        """All values and activations to zero at once."""
+        """Set all values and activations to zero at once."""
         for array in (self._values, self._wanted, self._reached, self._speed):
             array[:] = 0.0
 
 
 class MuscleDrive:
-    """From control values to the activation and the pull of each muscle.
+    """Computes the activation and the pull of each muscle from control values.
 
-    A muscle has its own control. If its halves usually act together (the lips, procerus), there is
-    also a control for both. The two controls add up. The pull is a power of the activation,
+    Each muscle has a control. If its halves usually act together (the lips, procerus), there is
+    also a control for both, and the two add up. The pull is a power of the activation,
 
         pull = activation ^ drive_power
 
     because a muscle that contracts by half is also only half as stiff: without the power the skin
-    would go less than half way. One power does not suit every muscle, so the muscle's own `drive`
-    multiplies it. Source: own; fitted to the motion of skin at half activations.
+    would move less than half way. One exponent does not suit every muscle, so the muscle's `drive`
+    multiplies the exponent. Source: own; fitted to the motion of skin at half activations.
     """
 
     def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
@@ -254,7 +253,7 @@ class MuscleDrive:
 
 
 def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:
-    """Least and greatest value of each control; one for both sides has those of a side."""
+    """Return the limits of each control; a control for both sides has the limits of one side."""
     limits = {control.name: (control.low, control.high) for control in controls}
     for name in layers.shares:
         sides = [limits[name + side] for side in SIDES if name + side in limits]
@@ -276,7 +275,7 @@ def follow(
         decay = np.exp(-rate[n] * dt)
         away = (away + slope * dt) * decay
         speed[n] = (speed[n] - rate[n] * slope * dt) * decay
-        # Below a millionth a muscle is relaxed: rest must be reached, not only approached.
+        # Below a millionth a muscle is relaxed, because rest must be reached exactly.
         if abs(away) < settled_distance and abs(speed[n]) < settled_speed:
             away = speed[n] = 0.0
         activation[n] = wanted[n] + away

@@ -1,9 +1,9 @@
-"""The standard face space in which a face is simulated, and the way back to the head's own.
+"""The standard face space in which a face is simulated, and the mapping to head coordinates.
 
-A rig is written in millimetres of a head of standard size. Landmarks span a space with three axes:
-lateral (to the subject's left), up and forward. One similarity brings a head of any size, place and
-orientation into it. Displacements become positions of the posed head in one compiled pass, because
-this happens in every frame and numpy needs eight passes.
+A rig is written in millimetres of a head of standard size. Landmarks define the axes of a space:
+lateral (to the subject's left), up and forward. One similarity maps a head of any size, place and
+orientation into this space. One compiled pass turns displacements into positions of the posed head
+in every frame; numpy would need eight passes.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
 head.
@@ -66,19 +66,19 @@ class FaceSpace:
         return cls((low + high) / 2.0, np.eye(3), scale)
 
     def to_standard(self, points: npt.ArrayLike) -> Floats64:
-        """Points [head units], shape (..., 3), in the standard space [mm]."""
+        """Map points [head units], shape (..., 3), to the standard space [mm]."""
         return (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
 
     def to_head(self, points: npt.ArrayLike) -> Floats64:
-        """Points [mm, standard space], shape (..., 3), in head coordinates."""
+        """Map points [mm, standard space], shape (..., 3), to head coordinates."""
         return self.vectors_to_head(points) + self.origin
 
     def vectors_to_head(self, vectors: npt.ArrayLike) -> Floats64:
-        """Displacements [mm, standard space], shape (..., 3), in head units and axes."""
+        """Map displacements [mm, standard space], shape (..., 3), to head units and axes."""
         return np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
 
     def vectors_to_standard(self, vectors: npt.ArrayLike) -> Floats64:
-        """Displacements [head units], shape (..., 3), in the standard space [mm]."""
+        """Map displacements [head units], shape (..., 3), to the standard space [mm]."""
         return np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
 
 
@@ -94,7 +94,7 @@ def to_posed_head(
 ) -> int:
     """Fill `out` (V, 3) [head units] with positions; return how many are not finite.
 
-    Such vertices are left out.
+    Vertices with such positions are not written.
 
     x, rest: positions now and at rest [mm]; axes (3, 3): those of the standard space in head
     coordinates, times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the

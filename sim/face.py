@@ -8,14 +8,14 @@
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, substep.py
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
-Built once from a mesh (face_model.py), then `step` moves it. Everything inside runs in the standard
-face space, fixed to the cranium; only displacements are turned back into the head's own
-coordinates, so a face at rest has exactly its input positions. The pose of the head moves the
-result as a whole, except the foot of the neck.
+A face is built once from a mesh (face_model.py), then `step` moves it. The simulation runs in the
+standard face space, fixed to the cranium. Only displacements are mapped back to head coordinates,
+so a face at rest has exactly its input positions. The pose of the head moves the result as a whole,
+except the base of the neck.
 
 Source: Kähler, Haber, Seidel 2001, "Geometry-based muscle modeling for facial animation"; Kähler
 et al. 2003, Figure 1 (left half).
-Differs from it: see the modules named above.
+The modules named above list the differences.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole projec
 
 
 class Simulation:
-    """A face that follows its controls; made by `sim.create`.
+    """A simulated face that follows its controls; made by `sim.create`.
 
     controls: muscles, jaw, gaze, and the layers above.
     bones: the places of jaw and eyeballs.
@@ -57,11 +57,11 @@ class Simulation:
         `step` rewrites the first.
     faces: triangles, shape (F, 3), read only.
     areas: skin of each vertex at rest [mm2 of the standard face], shape (V,), read only.
-    grip: how firmly the seal holds the lips together now.
+    grip: how firmly the lip seal holds at present.
     """
 
     def __init__(self, model: FaceModel, state: State | None = None) -> None:
-        """state: the arrays that kernels read and write; new ones at rest if it is left out."""
+        """state: the arrays that kernels read and write; None creates a state at rest."""
         surface = model.surface
         self._state = state or State.at_rest(surface, len(model.muscles.bundle.muscle))
         self._model = model
@@ -90,7 +90,7 @@ class Simulation:
         self.place_targets()
 
     def clone(self) -> Simulation:
-        """Another simulation of this face in its present state, without a finger on its skin."""
+        """Return a copy of this simulation in its present state, without pulls on its skin."""
         clone = Simulation(self._model)
         clone.copy_from(self)
         return clone
@@ -150,7 +150,7 @@ class Simulation:
         return bool((self._placed_for == self.controls.reached).all())
 
     def place_targets(self) -> None:
-        """Place the spring targets that bones, lids and muscles give at the present activations."""
+        """Compute the spring targets from bones, lids and muscles at the present activations."""
         model = self._model
         bones = self.bones
         state = self._state

@@ -1,4 +1,4 @@
-"""From a mesh to everything a simulation needs: lids, muscles, springs and contacts on its bones.
+"""Build all that a simulation needs from a mesh: lids, muscles, springs and contacts.
 
 foundation.py checks the head and places the bones.
 
@@ -35,11 +35,11 @@ from .tongue import Tongue, place_tongue
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper one turns inside out
-NECK_LENGTH = 45.0  # mm below the chin: the head's turn fades evenly, or the throat folds
+NECK_LENGTH = 45.0  # mm below the chin over which the head's turn fades, or the throat folds
 MEETING_SHARE = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
-WHOLE_LIP_REACH = 7.0  # mm from the mouth line, up to which skin follows in full
-LIP_END_REACH = 32.0  # mm from the mouth line, beyond which skin stays
-STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
+WHOLE_LIP_REACH = 7.0  # mm from the mouth line up to which skin follows fully
+LIP_END_REACH = 32.0  # mm from the mouth line beyond which skin stays
+STEP_MARGIN = 1.0 + ROUNDING  # factor by which a substep may exceed LONGEST_SUBSTEP
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +55,10 @@ class FaceModel(Foundation):
     closed_weight: Floats64  # (V,) of the mandible while the lips are kept closed over an open jaw
 
     def grip(self, activation: Floats64, jaw: tuple[float, ...], closed: float) -> Grip:
-        """How firmly the lips stick together; jaw and some muscles part them.
+        """Return how firmly the lips stick together; the jaw and some muscles part them.
 
-        activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
-        far the lips are kept together over an open jaw, 0..1.
+        activation: of each muscle, shape (M,); jaw: values open, forward, sideways; closed: how far
+        the lips are kept together over an open jaw, 0..1.
         """
         if not len(self.skin.lips.vertex):
             return Grip(0.0, 0.0)
@@ -181,14 +181,14 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats
 
 
 def _turning_share(surface: SkinSurface, landmarks: Floats64) -> Floats64:
-    """How far skin follows the pose of the head, shape (V, 1); the foot of the neck does not."""
+    """Return how far skin follows the head's pose, shape (V, 1); 0 at the base of the neck."""
     below = landmarks[8, 1] - surface.positions[:, 1]
     share: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
     return share
 
 
 def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) -> Floats64:
-    """The mandible's weight that keeps lips as at rest although the jaw is open, shape (V,)."""
+    """Return the mandible's weight that keeps lips as at rest over an open jaw, shape (V,)."""
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
     upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))
     if np.linalg.norm(upper - lower, axis=1).max() > PAIR_GAP:  # open at rest

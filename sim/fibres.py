@@ -1,11 +1,11 @@
-"""Muscle fibres: polylines from bone to skin, which follow the face, and their contraction.
+"""Muscle fibres: polylines from bone to skin that follow the face, and their contraction.
 
-A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is attached by arc length t
-in 0..1. At contraction c, the point at t moves to the earlier place of t (1 - c): skin slides along
-the fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp)
-stays still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres
-share one table of displacements at SAMPLES places along them, which each tick fills again. The
-skin, and muscles that lie on the fibre, read it by linear interpolation.
+A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Skin is attached to the fibre by arc
+length t in 0..1. At contraction c, the point at t moves to where the point at t (1 - c) was: skin
+slides along the fibre towards the origin. A muscle whose origin is no bone (frontalis: the scalp)
+is fixed at t = f instead, and both ends slide towards it: t moves to f + (t - f)(1 - c). A table
+holds the displacements at SAMPLES places along every fibre; each tick rewrites it. The skin, and
+muscles that lie on the fibre, read the table by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
@@ -38,31 +38,31 @@ LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
 
 
 class AttachedPoints(NamedTuple):
-    """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
+    """Points that may be attached to a muscle: the skin, or control points of a muscle above it."""
 
     positions: Floats64  # (n, 3) mm
-    normals: Floats64  # (n, 3) of the skin there
+    normals: Floats64  # (n, 3) normals of the skin there
     lip_side: Floats64  # (n,) of lip_lid_sides.lip_side
 
 
 class Gate(NamedTuple):
     """Where a muscle may act."""
 
-    side: float  # +1 left, -1 right: it fades across the midline; 0: it does not
-    lip: float  # +1 upper, -1 lower: it fades on the other lip; 0: it does not
+    side: float  # +1 left, -1 right: fades across the midline; 0: does not fade
+    lip: float  # +1 upper, -1 lower: fades on the other lip; 0: does not fade
 
 
 @njit
 def gate_at(gate: Gate, lateral: float, lip_side: float) -> float:
-    """1 where a muscle may act, 0 where it must leave the skin alone; lateral: place [mm]."""
+    """Return 1 where a muscle may act, 0 where it must not move the skin; lateral: place [mm]."""
     found = 1.0
     if gate.side != 0.0:  # fades to 0 across the midline; twins add up to 1
         midline_fade = 20.0  # mm across the midline over which a paired muscle yields to its twin
         found = min(max(0.5 + gate.side * lateral / (2.0 * midline_fade), 0.0), 1.0)
     if gate.lip != 0.0:
-        # A value of the lip side field: beyond it a gated muscle leaves the other lip alone.
+        # Value of the lip side field beyond which a gated muscle does not move the other lip.
         gate_ends = -0.6
-        gate_full = 1.0  # where it has its full hold; in between it fades, or corners get square
+        gate_full = 1.0  # value of full hold; without a fade in between, corners get square
         t = (gate.lip * lip_side - gate_ends) / (gate_full - gate_ends)
         t = min(max(t, 0.0), 1.0)
         found *= t * t * (3.0 - 2.0 * t)
@@ -97,8 +97,8 @@ class Stack(NamedTuple):
 class LineMotion(NamedTuple):
     """Displacements of all lines [mm], rewritten each tick."""
 
-    contracted: Floats64  # (B, SAMPLES, 3) of each active line by its contraction
-    carried: Floats64  # (B, FIBRE_POINTS, 3) of its points by the muscles beneath
+    contracted: Floats64  # (B, SAMPLES, 3) displacement of each active line by its contraction
+    carried: Floats64  # (B, FIBRE_POINTS, 3) displacement of its points by the muscles beneath
     is_carried: Flags  # (B,) whether any muscle beneath moves
 
     @classmethod
@@ -121,14 +121,14 @@ def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
-    """Lines (n, FIBRE_POINTS, 3), moved by shares (n,) of the way to the skin near their points."""
+    """Return lines (n, FIBRE_POINTS, 3), moved toward the skin near their points by shares (n,)."""
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
     normal = unit_vectors(normal)
     off = skin - lines.reshape(-1, 3)
     correction = ((off * normal).sum(axis=1, keepdims=True) * normal).reshape(lines.shape)
-    for _ in range(2):  # single vertices must not put kinks into a fibre
+    for _ in range(2):  # a single vertex must not make a kink in a fibre
         before = correction[:, :-2]
         after = correction[:, 2:]
         correction[:, 1:-1] = 0.25 * before + 0.5 * correction[:, 1:-1] + 0.25 * after
@@ -140,19 +140,20 @@ def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tupl
     """Fields of the skin, shape (V, ...), at points (n, 3): means of the nearest vertices."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
-    # The furthest neighbour gets no weight: two equally far ones cannot bend a midline fibre then.
+    # The furthest neighbour has weight 0, so that a tie between two of them cannot bend a midline
+    # fibre.
     weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
     weight /= weight.sum(axis=1, keepdims=True)
     return tuple(np.einsum("nk,nk...->n...", weight, field[vertices]) for field in fields)
 
 
 class FibreHold(NamedTuple):
-    """How firmly places hang on a fibre, and how they move when it contracts."""
+    """How firmly places are attached to a fibre, and how they move when it contracts."""
 
     width: float  # mm across the fibre, of a Gaussian
     beyond: float  # mm past its end, likewise
     weight: float
-    drawn: float  # share of the way to the fibre that a place at its end goes
+    drawn: float  # how far a place at its end moves towards the fibre line, as a share
     bulge: float  # mm along the normal, of a Gaussian along the fibre
     bulge_at: float  # 0..1
     lift: float  # mm along the normal, everywhere
@@ -213,7 +214,7 @@ def hang_on_fibre(
 
 @njit
 def arcs_along(points: Floats64, positions: Floats64) -> Floats64:
-    """Where along a line (k, 3), 0..1, it is nearest to each of the positions (n, 3)."""
+    """Return where a line (k, 3) is nearest to each of the positions (n, 3), as places 0..1."""
     reached = _reached(points)
     arc = np.empty(len(positions))
     foot = np.empty(3)
@@ -224,7 +225,7 @@ def arcs_along(points: Floats64, positions: Floats64) -> Floats64:
 
 @njit
 def _reached(points: Floats64) -> Floats64:
-    """How long a line (k, 3) is up to each of its points, shape (k,)."""
+    """Return the length of a line (k, 3) up to each of its points, shape (k,)."""
     reached = np.zeros(len(points))
     for k in range(len(points) - 1):
         squared = 0.0
@@ -238,7 +239,7 @@ def _reached(points: Floats64) -> Floats64:
 def _nearest(
     points: Floats64, reached: Floats64, place: Floats64, foot: Floats64
 ) -> tuple[float, float]:
-    """The squared distance of a line from a place, and where along it, 0..1; fills `foot` (3,)."""
+    """Return the squared distance of a place from a line, and its place along it; fills `foot`."""
     end = len(points) - 1
     nearest = np.inf
     arc = 0.0
@@ -252,7 +253,7 @@ def _nearest(
         for axis in range(3):
             at = points[k, axis] + t * (points[k + 1, axis] - points[k, axis])
             squared += (place[axis] - at) ** 2
-        if squared < nearest:  # of equal ones the first counts
+        if squared < nearest:  # of equal distances the first counts
             nearest = squared
             arc = (reached[k] + t * length) / reached[end]
             for axis in range(3):
@@ -268,7 +269,7 @@ def move_lines(
     mandible: RigidMotion,
     motion: LineMotion,
 ) -> None:
-    """Move all lines for one tick, each after the lines beneath it, and contract the active ones.
+    """Move all lines for one tick, each after the lines beneath it, and contract active lines.
 
     activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
     """
@@ -375,7 +376,7 @@ def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats
         arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
     remaining = max(1.0 - lost, LEAST_ARC)
     fixed = fixed_at * arc[count - 1]
-    # `there` and `here` only grow, so both find their segment by walking on.
+    # `there` and `here` only grow, so each search continues from its last segment.
     near = 1
     far = 1
     for s in range(samples):

@@ -1,7 +1,7 @@
 """The foundation of a face: the checked mesh, its size, bones, eyeballs, and names of controls.
 
 A head may be any object with `vertices` and `faces`; optional attributes add the parts of a face.
-Nothing here needs compilation, so the controls of a head are known at once.
+Nothing here is compiled, so the controls of a head are available at once.
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -41,8 +41,8 @@ Faces = npt.NDArray[np.int32]
 class Given(NamedTuple):
     """The optional attributes of a head; None if the head has no such attribute."""
 
-    landmarks: Any  # give size, lips and lids; else the face is a plain spring mesh
-    rig: Any  # gives muscles, where there are landmarks
+    landmarks: Any  # determine size, lips and lids; without them: a plain spring mesh
+    rig: Any  # determines muscles, if there are landmarks
     layers: Any  # give action units, expressions, ... above the muscles (layers.py)
     jaw_axis: Any  # gives a jaw; guessed from landmarks if it is None
     mandible_weight: Any  # of each vertex; guessed from landmarks if it is None
@@ -107,7 +107,7 @@ def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) 
         lip_side=np.zeros(len(vertices)),
         skull=skull,
         controls=controls,
-        layers=_read_layers((), controls),  # its tables would have no controls to name
+        layers=_read_layers((), controls),  # tables of layers would have no controls to refer to
         landmark_numbers=None,
         parts=given.parts,
     )
@@ -180,7 +180,7 @@ def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
 
 
 def _landmark_numbers(given: Any, vertex_count: int) -> Integers64 | None:
-    """Checked vertex numbers of the 68 landmarks, None if the head has none."""
+    """Return the checked vertex numbers of the 68 landmarks, None if the head has none."""
     if given is None:
         return None
     wanted = f"{LANDMARK_COUNT} vertex numbers"
@@ -204,15 +204,16 @@ def _skull(
     if condyles is None or weight is None:
         weight = np.zeros(surface.vertex_count)
         condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
-    # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
+    # Lips bound to one bone each would open as a rectangle; skin bound to both bones rounds the
+    # mouth.
     weight = np.clip(surface.smoother(rig.jaw.softness)(weight), 0.0, 1.0)
-    least_mandible = 1e-4  # share of the jaw's motion that counts as none
+    least_mandible = 1e-4  # share of the jaw's motion that counts as no motion
     weight[weight < least_mandible] = 0.0
     return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
 
 
 def _eyeballs(given: Any, space: FaceSpace) -> tuple[Eyeball, ...]:
-    """The eyeballs that a head has itself."""
+    """Return the eyeballs given by the head."""
     balls = []
     for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
         if eye.name not in ("right", "left"):
@@ -233,7 +234,7 @@ def _face_controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
         both = [muscle.name] if muscle.halves else []
         names = [*both, *(name for name, _ in sides_of(muscle))]
         controls += [Control(name, muscle.group, action=muscle.action) for name in names]
-    if skull.mandible_weight.any():  # lips that are apart at rest keep that distance
+    if skull.mandible_weight.any():  # lips that are apart at rest stay so
         controls.append(Control("lips_closed", "Lips"))
     controls += _jaw_controls(skull)
     controls += _gaze_controls(skull)

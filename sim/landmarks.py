@@ -1,8 +1,8 @@
 """The 68 landmarks, and points relative to them.
 
-A rig must move from head to head, so nothing in it may be a vertex number or a world coordinate.
-Each point is relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks, plus an
-offset "lateral, up, forward" in millimetres of a head of standard size (coordinates.py).
+A rig must fit any head, so it has no vertex numbers and no world coordinates. Each of its points is
+relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks, plus an offset "lateral,
+up, forward" in millimetres of a head of standard size (coordinates.py).
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
 head.
@@ -25,7 +25,7 @@ from ..jit import njit
 
 LANDMARK_COUNT = 68
 
-# The middle of each lip: away from the corners, and not the inner points, which often coincide.
+# Landmarks in the middle of each lip. The inner points are left out, because they often coincide.
 UPPER_LIP = (50, 51, 52)
 LOWER_LIP = (56, 57, 58)
 INNER_CORNERS = (60, 64)
@@ -76,7 +76,7 @@ class LandmarkPoint:
     def on(self, landmarks: Floats64, side: Side) -> Floats64:
         """Position [mm, standard space], shape (3,), on a head with these landmarks (68, 3).
 
-        The right side is the mirror image of the position in the rig.
+        A point of the right side is the mirror image of its position in the rig.
         """
         mirrored = side is Side.RIGHT
         point = np.zeros(3)

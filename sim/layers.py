@@ -4,9 +4,9 @@
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
 a share: the row at 1 adds that share to the control that the entry names. This control must be in a
-layer below. Five keys of a row are no entries. `action` describes its effect. `pair = true` makes
-three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
-two, `...Left` and `...Right`, the way ARKit spells them:
+layer below. Five keys of a row are not entries. `action` describes the effect of the row. `pair =
+true` makes three controls of one row: one for both sides, `..._left` and `..._right`; `pair = "Left
+Right"` makes two, `...Left` and `...Right`, as ARKit spells them:
 
     [AU4]
     action = "brow lowerer"
@@ -59,20 +59,20 @@ from ..geometry.read_only import read_only
 from ..schema import OneOf, Record, Rest, Within, question, read
 from .checked import several
 
-BOTH_SIDES = "Both sides"  # title of the layer that every face with paired muscles has
+BOTH_SIDES = "Both sides"  # title of the layer in every face with paired muscles
 SIDES = ("_left", "_right")
 ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the names of a pair's sides
     {True: SIDES, "Left Right": ("Left", "Right")}
 )
-GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
+GREATEST_SHARE = 2.0  # a larger share is taken for a typing error
 Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
 Floor = Annotated[float, Within(0.0, GREATEST_SHARE)]
-LEAST_WHOLE = 0.08  # of the control in `share_of`: below this the share fades, or it would jump
+LEAST_WHOLE = 0.08  # value of the control in `share_of` below which the share fades
 
 
 @dataclass(frozen=True)
 class Layers:
-    """All controls above the lowest ones, with the effect of each on those.
+    """All controls above the lowest controls, with their effects on the lowest controls.
 
     groups: title of the layer -> its names, from the lowest layer up.
     actions: name -> its effect, in words; "" if the table has none.
@@ -102,8 +102,8 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     given: objects from the bottom up, with `title`, `source` (the file, for errors) and `rows`,
     {row: {key: value}}; lowest: names of the lowest controls.
 
-    Raises ValueError, which names file and row, for a name that no layer below has, a share that is
-    not a number, a name already in use, and a pair that names a side.
+    Raises ValueError, with file and row, for a name that no layer below has, a share that is not a
+    number, a name already in use, and a paired row whose name has a side.
     """
     reader = _Reader(lowest)
     reader.add_both_sides()
@@ -151,7 +151,7 @@ class _Reader:
         self.share_of: dict[str, str] = {}
 
     def add_both_sides(self) -> None:
-        """The layer of names without side, each for both of its sides, or the one that there is."""
+        """Add the layer of names without side; each moves both sides, or the only side there is."""
         sides: dict[str, list[Floats64]] = {}
         for name, share in self.shares.items():
             if name.endswith(SIDES):
@@ -187,7 +187,7 @@ class _Reader:
         return list(made)
 
     def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> None:
-        """ValueError for names that a row cannot have, or cannot refer to."""
+        """Raise ValueError for names that a row cannot have, or cannot refer to."""
         if row.share_of is not None and row.share_of not in self.shares:
             raise ValueError(
                 f"{where}, 'share_of': no row above and no layer below has a control called "

@@ -177,7 +177,7 @@ def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Seque
 def _best_continuations(
     sequences: tuple[Sequence, ...],
 ) -> dict[tuple[Sequence, tuple[int, int, int]], Sequence]:
-    """Among all ways from a sequence to a configuration, the one with the shortest lines."""
+    """Continue a sequence to a configuration with the shortest inner lines."""
     best: dict[tuple[Sequence, tuple[int, int, int]], tuple[float, Sequence]] = {}
     for sequence in sequences:
         candidate = (round(_length_of_inner_lines(sequence), 9), sequence)
@@ -188,7 +188,7 @@ def _best_continuations(
 
 
 def _length_of_inner_lines(sequence: Sequence) -> float:
-    """Twice the length of all lines inside an equilateral triangle, plus its constant border."""
+    """Return twice the length of lines inside an equilateral triangle, plus its constant border."""
     corners = POINTS[np.array(split_in_order(sequence))]
     u, v, w = np.moveaxis(corners - np.roll(corners, 1, axis=1), 2, 0)
     return float(np.sqrt(-(u * v + v * w + w * u)).sum())

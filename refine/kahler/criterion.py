@@ -139,7 +139,7 @@ class Thresholds:
     def __init__(
         self, once: float, twice: float, meaning: str, *, least: float = 0.0, levels: int = 2
     ) -> None:
-        """`meaning`: the measured quantity, for errors; `least`: thresholds must be above it.
+        """`meaning`: the measured quantity, for errors; `least`: smaller thresholds count as this.
 
         `levels`: the most splits of an edge, 0 to 2. Raises ValueError if the thresholds are out of
         order, and for other levels.

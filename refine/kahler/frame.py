@@ -1,12 +1,13 @@
 """The arrays that the passes of a frame share.
 
-Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it decides which edges are
-split (`splits`, and how far their points have grown), then it places points into `rows` and writes
-triangles. The arrays stay the same from frame to frame, except `rows`, which the caller may lend.
+Kähler, Haber, Seidel 2003, section 4. A frame has two halves. First it decides which edges are
+split (`splits`, and geomorph weights). Then it places points into `rows` and writes triangles. The
+arrays stay the same from frame to frame, except `rows`, which the caller may lend.
 
-Compiled code takes the whole `FrameBuffers`, or only the arrays that it reads. To pass an array
-alone costs a twentieth of a microsecond, and in a named tuple twice as much. The paper's frame
-takes 40 microseconds, so its passes take arrays, or plain tuples (`frame[:]`), which cost the same.
+Compiled code takes the whole `FrameBuffers`, or only the arrays that it reads. Passing an array
+costs a twentieth of a microsecond, and in a named tuple twice as much. A frame of the paper's
+method takes 40 microseconds, so its passes take arrays, or plain tuples (`frame[:]`), which cost no
+more.
 """
 
 from typing import NamedTuple
@@ -32,14 +33,18 @@ class FrameBuffers(NamedTuple):
     normals: Floats32
     """Their unit normals, shape (V, 3)."""
     splits: Unsigned8
-    """Splits of attribute edges, edges first, shape (R + 1,); the last entry is for no edge."""
+    """Splits of attribute edges, shape (R + 1,): first all edges, then copies; the last entry
+    stands for no edge.
+    """
     geomorph_once: Floats32
-    """Share of its way from the straight edge that the middle point of an edge has gone, (E,).
+    """Geomorph weight of an edge's middle point: its distance from the straight edge relative to
+    the final distance, (E,).
 
-    All are 1 unless frames are blended (beyond/blending.py); there is no meaning without a point.
+    All are 1 unless frames are blended (beyond/blending.py); entries without a point have no
+    meaning.
     """
     geomorph_twice: Floats32
-    """The same for its quarter points."""
+    """The same for the quarter points of an edge."""
     first_points: Unsigned32
     """Output row of the first point of every split attribute edge, shape (R + 1,).
 
@@ -57,7 +62,7 @@ class FrameBuffers(NamedTuple):
     `counts[CENTRES]` are valid. Shape (F + 1,).
     """
     centre_weights: Floats32
-    """Place of each of these points in its triangle: weights of the corners, shape (F + 1, 3)."""
+    """Place of each point in the middle of a triangle: weights of the corners, shape (F + 1, 3)."""
     counts: Integers64
     """Counts, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats32
@@ -90,8 +95,8 @@ def buffers_for(
         positions=positions,
         points=points,
         normals=normals,
-        # One more than attribute edges: triangles without edges refer to the last and find zero
-        # splits.
+        # One more than attribute edges: triangles without edges refer to the last entry, which has
+        # no splits.
         splits=np.zeros(attribute_edge_count + 1, dtype=np.uint8),
         geomorph_once=np.ones(edge_count, dtype=np.float32),
         geomorph_twice=np.ones(edge_count, dtype=np.float32),

@@ -1,9 +1,10 @@
 """Given splits of edges, the same in all frames: one connectivity for a clip.
 
 Kähler, Haber, Seidel 2003, section 4.1, decide on splits in every frame, so vertices and triangles
-of the output change. Many file formats, and programs that keep data at vertices, need the same ones
-in every frame. The splits of a clip are, at each edge, the most that any of its frames needs
-(`splits_of_clip`): still adaptive, and nowhere coarser than a frame by itself.
+of the output change. Many file formats, and programs that keep data at vertices, need the same
+vertices and triangles in every frame. `splits_of_clip` finds, for each edge, the most splits that
+any frame of a clip needs. The result is still adaptive, and never coarser than a frame that is
+refined alone.
 
 With a criterion that never changes, `Criterion.is_constant`, a refiner decides, numbers points and
 looks triangles up once (`Kahler`). A frame only places points.
@@ -24,7 +25,7 @@ from .table import MOST_SPLITS
 
 
 class GivenSplits(Criterion):
-    """The same splits in every frame; their points are fully grown."""
+    """A criterion with the same splits in every frame; all points are at their final positions."""
 
     uses_normals = False
     is_constant = True
@@ -55,7 +56,7 @@ class GivenSplits(Criterion):
             )
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
-        """Write a metric at which points are fully grown, shape (E,)."""
+        """Write a metric at which points are at their final positions, shape (E,)."""
         np.copyto(metric, self._splits)
         metric[self._splits == 0] = -np.inf
 

@@ -1,9 +1,9 @@
-"""Loop's rules where every frame has the same splits, with fully grown points.
+"""Loop's rules for frames that all have the same splits, without blending.
 
 Kähler, Haber, Seidel 2003, section 4.2. Moved vertices and the first level are then fixed sums of
 the vertices of a frame, a sparse matrix. Its rows have four entries for a point on an edge and nine
 for a vertex, so no list of lengths is needed. Indices and weights are computed once; vertices that
-stay have weights 1 and 0. The results have the bits of smoothing.py.
+stay have weights 1 and 0. The results equal those of smoothing.py to the last bit.
 """
 
 from typing import NamedTuple
@@ -28,7 +28,7 @@ from .frame import FrameBuffers
 
 
 class KeptRows(NamedTuple):
-    """V moved vertices and the N middles of split edges; compiled code takes it as it is."""
+    """The rows of the matrix, for V vertices and the N middles of split edges."""
 
     points: Floats32
     """Positions of a frame in lanes (mesh/lanes.py), shape (V, 4)."""
@@ -41,7 +41,7 @@ class KeptRows(NamedTuple):
     ring: Floats32
     """Weight of each vertex around it, shape (V,)."""
     crowded: Unsigned32
-    """Vertices that move and have more than eight around them."""
+    """Moved vertices with more than eight neighbours."""
     corners: Unsigned32
     """Ends of a split edge and the corners opposite, shape (N, 4); edges inside the mesh first."""
     rows: Unsigned32
@@ -83,7 +83,7 @@ def copy_frame(first: int, last: int, frame: FrameBuffers, kept: KeptRows) -> No
 
 @njit(lanes=True)
 def place_kept_vertices(first: int, last: int, kept: KeptRows, rows: Floats32) -> None:
-    """Write all vertices as if they had at most eight others around them (Fig. 3)."""
+    """Write all vertices as if they had at most eight neighbours (Fig. 3)."""
     points = kept.points
     normals = kept.normals
     near = kept.near
@@ -99,7 +99,7 @@ def place_kept_vertices(first: int, last: int, kept: KeptRows, rows: Floats32) -
 
 @njit
 def place_crowded_vertices(kept: KeptRows, rings: Rings, rows: Floats32) -> None:
-    """Write the positions of vertices with more than eight others around them."""
+    """Write the positions of vertices with more than eight neighbours."""
     points = kept.points
     others = rings.others
     for v in kept.crowded:
@@ -153,6 +153,6 @@ def place_kept_middles(
 
 @njit
 def keep_middles(kept: KeptRows, rows: Floats32, middles: Floats32) -> None:
-    """Copy the first level, before the second moves it, into `middles`, shape (E, 3)."""
+    """Copy first-level points, before the second level moves them, into `middles`, shape (E, 3)."""
     for k in range(len(kept.edges)):
         write_row(middles, kept.edges[k], row_of(rows, kept.rows[k]))

@@ -1,15 +1,15 @@
-"""Numbering of new points, and the subtriangles that are looked up for them.
+"""Numbering of new points, and look-up of subtriangles.
 
 Kähler, Haber, Seidel 2003, section 4.3. The output begins with one row per wedge, so that vertex v
 of the input is row v. The points of an attribute edge follow in a block, in the direction of its
 edge: the middle point, or quarter, middle, quarter. Points in the middle of triangles come last;
 only blending has them (beyond/blending.py).
 
-Attributes (texture coordinates, colours) of new points are
-interpolated linearly along their edge, with the values of their own side of a seam (section 4.4,
-first paragraph).
+Attributes (texture coordinates, colours) of new points are interpolated linearly along their edge,
+separately on each side of a seam (section 4.4, first paragraph).
 
-All loops here go over split edges, not over triangles: most triangles are not split.
+Loops run over split edges instead of triangles where possible, because most triangles are not
+split.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ SIDE_BITS = np.uint32(2)
 SIDE_MASK = np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
-"""Place values of the splits of a triangle's three edges in the number of its configuration."""
+"""Factors of the splits of a triangle's three edges in the number of its configuration."""
 
 
 @njit
@@ -49,17 +49,17 @@ def number_points(
 ) -> tuple[int, int, int]:
     """List the split edges, give new points their rows, and triangles their configuration.
 
-    The arrays from `splits` on are those of `FrameBuffers`. `split_once` gets every split edge,
-    `split_twice` those split twice. The entries of `first_points` for edges without a split have no
-    meaning. `counts` gets all counts but that of centres. Returns the numbers of output rows and
-    triangles, and the most splits of an edge.
+    The arrays from `splits` on are those of `FrameBuffers`. `split_once` receives every split edge,
+    and `split_twice` the edges split twice. The entries of `first_points` for edges without a split
+    have no meaning. `counts` receives all counts except the number of centres. Returns the numbers
+    of output rows and triangles, and the most splits of an edge.
     """
     edge_count = edge_sides.shape[0]
     face_count = configurations.shape[0] - 1
     once_count = twice_count = most = 0
     for e in range(edge_count):
-        # The edge is always written, and counted if it is split: no branch that a processor could
-        # mispredict.
+        # The edge is always written, but counted only if it is split: this avoids a branch that a
+        # processor could mispredict.
         split_once[once_count] = e
         once_count += splits[e] > 0
     configurations[:] = 0
@@ -162,7 +162,7 @@ def look_up_triangles(
             source[count] = t
             count += one
             continue
-        # The 12 numbered points; those of edges that are not split are never looked up.
+        # The 12 numbered points; points of edges that are not split are never looked up.
         for i in range(3):
             side = triangle_attribute_edges[t, i]
             edge = side >> one

@@ -8,11 +8,11 @@ Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
     place       moved vertices, first level, second level  (4.2, smoothing.py)
     look up     subtriangles of each triangle              (4.3, table.py, look_up.py)
 
-Where the criterion never changes, marking, numbering and looking up are done once (`Topology`): all
-frames have the same triangles, and a frame only finds normals and places points.
+If the criterion never changes, marking, numbering and looking up are done once (`Topology`). Then
+all frames have the same triangles, and a frame only computes normals and places points.
 
 Differs from the paper: normals of new points are interpolated linearly and then normalised; the
-deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
+deformed mesh is copied in each frame, because a simulation may change it meanwhile.
 """
 
 from functools import cached_property
@@ -43,7 +43,7 @@ from .table import MOST_SPLITS, POINTS_OF_EDGE
 
 
 class Topology(NamedTuple):
-    """The triangles of all frames, if every frame has the same."""
+    """The triangles of all frames, if they never change."""
 
     vertex_count: int
     triangles: Unsigned32
@@ -67,7 +67,7 @@ class Kahler(BaseRefiner):
     ) -> None:
         """Bind to a mesh (see `registry.create`).
 
-        `criterion`, `scheme`, `cutting`: None for the paper's.
+        `criterion`, `scheme`, `cutting`: None chooses the paper's.
         """
         super().__init__(faces, rest_positions, **values)
         mesh = self._mesh
@@ -111,7 +111,7 @@ class Kahler(BaseRefiner):
     def vertex_capacity(self) -> int:
         """Most output vertices: every wedge, three points on every attribute edge, and centres.
 
-        If the criterion never changes, exactly those of a frame.
+        If the criterion never changes, this is the exact number of a frame.
         """
         if self.topology is not None:
             return self.topology.vertex_count
@@ -123,14 +123,14 @@ class Kahler(BaseRefiner):
     def triangle_capacity(self) -> int:
         """Most output triangles: the longest row of the table for each.
 
-        If the criterion never changes, exactly those of a frame.
+        If the criterion never changes, this is the exact number of a frame.
         """
         if self.topology is not None:
             return len(self.topology.triangles)
         return int(self.cutting.patterns.subtriangles.shape[1] * len(self.connectivity.faces))
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        """Write the frame: one line for each step above."""
+        """Write a frame: one line for each step of the list above."""
         if self._criterion.uses_normals or self._scheme.uses_normals:
             self.find_normals()
         self._scheme.prepare(self._frame)
@@ -148,7 +148,7 @@ class Kahler(BaseRefiner):
         return vertex_count, triangle_count
 
     def _fill_kept(self, stream: Stream, topology: Topology) -> tuple[int, int]:
-        """Write a frame whose vertices and triangles are numbered already."""
+        """Write a frame whose vertices and triangles have been numbered before."""
         vertex_count = topology.vertex_count
         triangle_count = len(topology.triangles)
         out = self._reserve_rows(stream, vertex_count, triangle_count)
@@ -159,7 +159,7 @@ class Kahler(BaseRefiner):
         return vertex_count, triangle_count
 
     def _reserve_rows(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Return the arrays of a stream, whose rows are those of the frame from now on."""
+        """Return the arrays of a stream, and make its rows the rows of the frame."""
         out = self.reserve(stream, vertex_count, triangle_count)
         if out.vertices is not self._frame.rows:
             self._frame = self._frame._replace(rows=out.vertices)
@@ -167,9 +167,9 @@ class Kahler(BaseRefiner):
 
     @cached_property
     def topology(self) -> Topology | None:
-        """Vertices and triangles of all frames if the criterion never changes, else None.
+        """The triangles of all frames if the criterion never changes, else None.
 
-        It is also None where a frame depends on those before it.
+        It is also None if frames depend on earlier frames (`coherent`).
         """
         if not self._criterion.is_constant or self.cutting.has_memory:
             return None
@@ -183,7 +183,7 @@ class Kahler(BaseRefiner):
 
     @cached_property
     def _own_stream(self) -> OwnStream:
-        """The stream for frames without a lent one."""
+        """The stream for frames for which the caller lends none."""
         if self.topology is not None:
             return OwnStream.with_triangles(self.vertex_columns, *self.topology)
         return super()._own_stream
@@ -194,9 +194,9 @@ class Kahler(BaseRefiner):
         self.cutting.mark(self._criterion, self._frame, self.edge_splits)
 
     def _number(self) -> tuple[int, int]:
-        """Give new points their rows, and triangles their row of the table; count both.
+        """Assign output rows to new points, and table rows to triangles; count both.
 
-        Raises ValueError if a criterion asks for more than the table has.
+        Raises ValueError if a criterion wants more splits than the table has.
         """
         vertex_count, triangle_count, most = number_points(*self._of_numbering)
         self._first_centre = vertex_count
@@ -221,7 +221,7 @@ class Kahler(BaseRefiner):
         look_up_triangles(*self._of_look_up, self._first_centre, triangles, source)
 
     def complaint(self) -> str | None:
-        """Name the criterion that has measured NaN in the last frame; None if none has.
+        """Describe the criterion that measured NaN in the last frame; None if there was no NaN.
 
         It measures again, for `refine.check`.
         """
@@ -234,9 +234,10 @@ class Kahler(BaseRefiner):
         return self._origins_among(mesh.wedge_vertices, mesh.edges[mesh.attribute_edges])
 
     def origins_of_values(self) -> Origins:
-        """The same by rows of the values that were bound at corners, instead of vertices.
+        """Return origins whose vertices are replaced by rows of the values bound at corners.
 
-        So each side of a seam has its own place. -1 is the row of a vertex without triangles.
+        So the two sides of a seam have different origins. The row of a vertex without triangles is
+        -1.
         """
         return self._origins_among(self.connectivity.wedge_uv, self.connectivity.attribute_edge_uv)
 
@@ -260,7 +261,7 @@ def points_on_edges(
     `ends`: those of attribute edges, shape (R, 2); `splits`: those of these edges, shape (R,).
     """
     point_counts = np.array(POINTS_OF_EDGE)[splits]
-    # Places along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
+    # Places of the points of a block along the edge, in quarters: x 2 x or 1 2 3.
     block_starts = np.cumsum(point_counts) - point_counts
     within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
     place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)

@@ -11,20 +11,20 @@ from .frame import FrameBuffers
 
 
 class Scheme:
-    """Base class of all schemes, the paper's and your own: it places points.
+    """Base class of all schemes, the paper's and your own: a scheme places points.
 
-    A subclass has `place`; all other methods do nothing by default. A refiner calls `bind` once,
-    then in every frame `prepare`, `place` and, if it blends, `place_centres`.
+    A subclass defines `place`; all other methods do nothing by default. A refiner calls `bind`
+    once, then in every frame `prepare`, `place` and, if it blends, `place_centres`.
     """
 
     interpolates = False
     """Whether the original vertices stay where they are."""
     uses_normals = True
-    """Whether it reads normals of frames; they are computed only if a part reads them."""
+    """Whether the scheme reads normals of frames; they are computed only if a part reads them."""
     measures = False
-    """Whether it has a `measure`, which the criterion `displacement` needs."""
+    """Whether the scheme defines `measure`, which the criterion `displacement` needs."""
     parts: tuple["Scheme", ...] = ()
-    """Schemes that this one asks; each of them serves one refiner only, too."""
+    """Schemes that this scheme uses; each of them also serves only one refiner."""
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
@@ -32,13 +32,13 @@ class Scheme:
         """Take the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
     def keep(self, frame: FrameBuffers) -> None:
-        """Prepare for frames with the splits of this one; called once, when points are numbered."""
+        """Prepare for frames with the same splits as `frame`; called once, after numbering."""
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Look at the deformed mesh, before the criterion decides.
+        """Read the deformed mesh, before the criterion decides.
 
-        Keep only differences of positions: refined normals call `place` twice, first for the mesh
-        relative to its first vertex, with every edge split once.
+        Store only differences of positions. With refined normals `place` is called twice, first for
+        the mesh relative to its first vertex, with every edge split once.
         """
 
     def place(self, frame: FrameBuffers) -> None:

@@ -1,4 +1,4 @@
-r"""Smoothing: where vertices and new points on split edges go; the paper's scheme, named `loop`.
+r"""Smoothing: positions of vertices and of new points on split edges; the paper's scheme `loop`.
 
 Kähler, Haber, Seidel 2003, section 4.2 with Figs. 3 and 4, after Loop 1987. `o` is the point that
 is computed.
@@ -30,14 +30,14 @@ m is the first-level point of the edge; p, q, r, s those of the neighbour edges 
 their midpoints where these are not split. a' and b' are the moved end points; their weights are in
 mesh/rings.py.
 
-The paper leaves one question open; we decide that m, p, q, r, s enter the second level as the first
-level left them, so that the order of edges cannot matter.
+The paper leaves one question open. We decide that the second level reads m, p, q, r, s as the first
+level left them, so that the order of edges does not matter.
 
-The *geomorph weight* is the share of its way from the straight edge that a point has gone: 0 to 1,
-for each level of each edge. It is 1 everywhere unless the frame is blended (beyond/blending.py). A
-mix with weight 0 or 1 returns one of its two sides to the last bit.
+The *geomorph weight* of a point is 0 on the straight edge and 1 at its final position; each edge
+has one for each level. It is 1 everywhere unless the frame is blended (beyond/blending.py).
+Interpolation with weight 0 or 1 returns one of the two positions to the last bit.
 
-Normals of new points are interpolated between their two neighbours on the edge and normalised
+Normals of new points are interpolated between their two neighbours on the edge, and normalised
 (section 4.4, first paragraph).
 """
 
@@ -106,7 +106,7 @@ class LoopScheme(Scheme):
         self._kept: KeptRows | None = None
 
     def keep(self, frame: FrameBuffers) -> None:
-        """Compute a matrix, if all points are fully grown."""
+        """Compute a matrix, unless the frame is blended."""
         edges = frame.split_edges
         twice = frame.twice_split_edges
         once_grown = (frame.geomorph_once[edges] == ONE).all()
@@ -130,7 +130,7 @@ class LoopScheme(Scheme):
         place_by_loop(*self._tuples, self._vertex_geomorph, self._middles)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
-        """Do the same in loops that threads share, with the same bits."""
+        """Do the same in loops shared among threads, with results equal to the last bit."""
         around = self._around
         middles = self._middles
         geomorph = self._vertex_geomorph
@@ -141,7 +141,7 @@ class LoopScheme(Scheme):
         share(place_quarters, len(frame.twice_split_edges), frame, around, middles)
 
     def _place_kept(self, frame: FrameBuffers, kept: KeptRows) -> None:
-        """Do the same where splits stay."""
+        """Do the same for frames with the same splits."""
         rows = frame.rows
         vertex_count = len(frame.points)
         share(copy_frame, vertex_count, frame, kept)
@@ -184,7 +184,7 @@ def geomorph_vertices(
 def place_vertices(
     first: int, last: int, frame: FrameBuffers, rings: Rings, geomorph: Floats32
 ) -> None:
-    """Write the original vertices; the vertex rule moves those at split edges (Fig. 3).
+    """Write the original vertices; the vertex rule moves vertices at split edges (Fig. 3).
 
     `geomorph`: of each vertex, shape (V,).
     """
@@ -214,7 +214,7 @@ def place_middles(
 ) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
 
-    `middles`: fully grown points, shape (E, 3).
+    `middles`: points at their final positions, shape (E, 3).
     """
     points = frame.points
     normals = frame.normals
@@ -245,7 +245,7 @@ def place_middles(
 def wing(
     points: Floats32, middles: Floats32, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
-    """The first-level point of a neighbour edge, at its present growth from the midpoint."""
+    """Return the first-level point of a neighbour edge at its present geomorph weight."""
     start = row_of(points, ends[0])
     end = row_of(points, ends[1])
     straight = times(HALF, plus(start, end))
@@ -254,7 +254,7 @@ def wing(
 
 @njit
 def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np.float32:
-    """Growth of the middle of an edge; 0 if it has none."""
+    """Return the geomorph weight of the middle of an edge; 0 if the edge is not split."""
     return geomorph[e] if splits[e] > 0 else ZERO
 
 
@@ -323,9 +323,9 @@ def place_by_loop(
 ) -> None:
     """Write moved vertices, the first level and the second level of a frame.
 
-    This is one call, because four calls would take longer than their work. The plain tuples are
-    `FrameBuffers`, `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and `middles`, shape
-    (E, 3), are scratch.
+    This is one kernel, because the overhead of four calls would take longer than their work. The
+    plain tuples are `FrameBuffers`, `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and
+    `middles`, shape (E, 3), are scratch.
     """
     of_frame = FrameBuffers(*frame)
     of_edges = Surroundings(*around)
@@ -346,7 +346,7 @@ def place_kept(
     inside_count: int,
     middles: Floats32,
 ) -> None:
-    """Do the same where splits stay; `kept`: the plain tuple of `KeptRows`."""
+    """Do the same for frames with the same splits; `kept`: the plain tuple of `KeptRows`."""
     of_frame = FrameBuffers(*frame)
     matrix = KeptRows(*kept)
     rows = of_frame.rows

@@ -15,11 +15,11 @@ its quarter points near the start and near the end of the edge.
               /               \
              0---4----3----5---1
 
-Each entry is found by cutting the polygon of its points to pieces: the ear with the shortest
-diagonal first, in an equilateral triangle. This cuts off split corners as Loop subdivision does,
-ends with its central triangle where all edges are split, and never puts three points of one edge
-into one subtriangle. Up to rotation there are eleven patterns. Titles are s_0 s_1 s_2 and the
-number of subtriangles; dots are lines at other angles:
+Each entry is found by ear clipping of the polygon of its points in an equilateral triangle: the ear
+with the shortest diagonal first. This cuts off split corners as Loop subdivision does, ends with
+its central triangle where all edges are split, and never puts three points of one edge into one
+subtriangle. Up to rotation there are eleven patterns. Titles are s_0 s_1 s_2 and the number of
+subtriangles; dots are lines at other angles:
 
           000: 1              100: 2              200: 4              110: 3
             *                   *                   *                   *
@@ -54,7 +54,7 @@ number of subtriangles; dots are lines at other angles:
      /  |  \ /  |  \     /  |  \ /  |/ \     / \...\ /  |/ \
     *---*---*---*---*   *---*---*---*---*   *---*---*---*---*
 
-The other sixteen configurations are rotations of these. Among equal cuts the one at the near-start
+The other sixteen configurations are rotations of these. Among equal cuts the cut at the near-start
 point is taken in every corner, so the table does not depend on the first corner of a triangle. The
 table is built at import, in a few milliseconds, and every entry is verified: its subtriangles have
 positive area, cover the triangle exactly, use every point, and share inner edges in pairs.
@@ -149,12 +149,12 @@ def _cut_ears(polygon: list[int]) -> list[Triangle]:
 
 
 def _is_near_end(point: int) -> bool:
-    """Break ties: take the one of two equal cuts that is at a near-start point, in all corners."""
+    """Break ties: of two equal cuts take the cut at a near-start point, in all corners."""
     return point > 2 and point % 3 == 2
 
 
 def _on_one_edge(polygon: list[int], *, without: int) -> bool:
-    """Whether the points of a polygon without one of them lie on one edge of the triangle."""
+    """Return whether all points of a polygon but one lie on the same edge of the triangle."""
     left = [_PLACES[point] for point in polygon if point != without]
     return any(all(place[k] == 0 for place in left) for k in range(3))
 

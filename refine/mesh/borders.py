@@ -1,8 +1,8 @@
 """Border curves: sequences of vertices along the borders of a mesh, and their ends.
 
 A border runs on through a vertex with exactly two border edges, unless it has a *corner* there.
-Corners are those of a shut mouth, where the border of the upper lip turns back as that of the lower
-one, or those of a table cloth. Corners are found on the mesh at rest and remain corners when it
+Examples are the corners of a table cloth, or of a shut mouth, where the border of the upper lip
+turns back along the lower lip. Corners are found on the mesh at rest and remain corners when it
 moves.
 """
 
@@ -23,7 +23,8 @@ TURN_ROUNDING = 1e-9
 def border_neighbours(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
     """Find the two neighbours of every vertex along its border, shape (V, 2).
 
-    A vertex where no border runs on is its own neighbour, twice. `rest_positions`: shape (V, 3).
+    For a vertex where no border runs on, both neighbours are the vertex itself. `rest_positions`:
+    shape (V, 3).
     """
     every_vertex = np.arange(mesh.vertex_count, dtype=np.uint32)
     neighbours = np.stack([every_vertex, every_vertex], axis=1)

@@ -1,4 +1,4 @@
-r"""Edges of the bound mesh: found once, walked every frame.
+r"""Edges of the bound mesh: found once, read in every frame.
 
 Flat index arrays hold all that the paper reads from its half-edge structure (section 3, after
 Campagna et al. 1998). They are built once, because the connectivity never changes:
@@ -17,7 +17,7 @@ An edge is *interior* when exactly two triangles run through it in opposite dire
 edge (one side, three sides, two sides in the same direction) is a *border*. Boundary rules split
 it; they read only the end points, so all sides agree.
 
-A *crease* is an edge inside the mesh that stays sharp: it is a border, too (creases.py).
+A *crease* is an edge inside the mesh that stays sharp: it is treated as a border (creases.py).
 
 seams.py describes wedges and attribute edges, the copies along texture seams.
 
@@ -35,7 +35,7 @@ from ...jit import njit
 from .seams import find_seams
 from .validation import as_indices
 
-MOST_VERTICES = 2**31  # numbers have 32 bits in the tables that the kernels fill
+MOST_VERTICES = 2**31  # the tables that the kernels fill have numbers of 32 bits
 
 
 class Surroundings(NamedTuple):
@@ -77,9 +77,9 @@ class Connectivity(NamedTuple):
     attribute_edge_uv: Integers32
     """Texture coordinates at the ends a, b of each attribute edge, shape (R, 2)."""
     is_sharp: Flags
-    """Edges that are creases and count as borders (creases.py), shape (E,)."""
+    """Flags of creases, which are treated as borders (creases.py), shape (E,)."""
     vertex_count: int
-    """V, isolated vertices included."""
+    """V, including isolated vertices."""
 
     @property
     def is_degenerate(self) -> Flags:

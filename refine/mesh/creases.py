@@ -3,8 +3,8 @@ r"""Creases: edges that stay sharp because the surface turns sharply there at re
     crease      an interior edge whose two triangles, at rest, look in directions that are farther
                 apart than the crease angle: 90 degrees along the edges of a cube, 0 in a plane
 
-It counts as a border of both its sides (connectivity.py): rules for it read only its two ends, or
-its curve. So no crack can open, and no rule rounds it.
+It is treated as a border on both sides (connectivity.py): its rules read only its two ends, or its
+curve. So no crack can open, and no rule rounds it.
 
 A vertex on a crease has several *sectors*, the triangles around it between one crease and the next:
 
@@ -27,13 +27,15 @@ from .connectivity import Connectivity
 
 
 class Sectors(NamedTuple):
-    """A mesh with vertices parted into sectors; without creases a sector is a vertex."""
+    """A mesh whose vertices are divided into sectors; one per vertex without creases."""
 
     corners: Unsigned32
-    """Sector of each corner, shape (F, 3). Vertex v has sector v; its others follow after all V."""
+    """Sector of each corner, shape (F, 3). The first sector of vertex v is v; its other sectors
+    have numbers from V on.
+    """
     edges: Unsigned32
-    """Sectors at both ends of every edge on its first side; after all E, those of creases on their
-    second side, shape (E', 2).
+    """Sectors at both ends of every edge on its first side, then, for creases, on their second
+    side, shape (E', 2).
     """
     edge_of: Unsigned32
     """The edge of each of these rows, shape (E',)."""
@@ -44,7 +46,7 @@ class Sectors(NamedTuple):
 def with_creases(
     mesh: Connectivity, rest_positions: Floats64, crease_angle: object
 ) -> Connectivity:
-    """Make borders of the edges that are sharper at rest than `crease_angle` [degrees].
+    """Make the edges that are sharper at rest than `crease_angle` [degrees] creases.
 
     None keeps the mesh as it is; `rest_positions`: shape (V, 3). Raises ValueError for an angle
     that is not from 0 to 180.
@@ -61,7 +63,7 @@ def with_creases(
 
 
 def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
-    """Make borders of interior edges that are flagged, shape (E,)."""
+    """Make the flagged interior edges, shape (E,), creases."""
     is_sharp = is_sharp & mesh.around.is_interior
     edges = np.flatnonzero(is_sharp)
     points = mesh.around.points.copy()
@@ -113,8 +115,8 @@ def sectors_of(mesh: Connectivity) -> Sectors:
 def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned32, int]:
     """The sector of each corner, shape (F, 3), and the number of sectors.
 
-    `is_parting`: edges at which sectors end, shape (E,). Vertex v has sector v; its other sectors
-    follow after all V.
+    `is_parting`: edges at which sectors end, shape (E,). The first sector of vertex v is v; its
+    other sectors have numbers from V on.
     """
     on_crease = np.zeros(mesh.vertex_count, dtype=np.bool_)
     on_crease[mesh.edges[is_parting]] = True
@@ -159,7 +161,7 @@ def _joined_corners(
     is_sharp: Flags,
     on_crease: Flags,
 ) -> Integers32:
-    """For every corner, the corner that represents its sector, shape (3 F,).
+    """Return, for every corner, the corner that represents its sector, shape (3 F,).
 
     Corners at a vertex without creases are one sector, even if no edge joins them.
     """

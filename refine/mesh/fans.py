@@ -1,8 +1,8 @@
 """Triangles and edges around each vertex, sorted once, for loops shared by threads (threads.py).
 
-A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. A
-loop over vertices can be shared. Each vertex adds its triangles in the order of the loop over
-triangles, and its edges likewise, so its sums have the same bits.
+A loop over triangles that adds to their corners cannot be shared, because two threads could add to
+one vertex. A loop over vertices can be shared. Each vertex sums its triangles and edges in the
+order of a loop over all triangles and edges, so sums are equal to the last bit.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class Fans(NamedTuple):
     neighbour_starts: Unsigned32
     """The same for neighbours, shape (V + 1,)."""
     neighbours: Unsigned32
-    """The other ends of the edges at each vertex, edges in their order, shape (2 E,)."""
+    """The other ends of the edges at each vertex, in the order of edges, shape (2 E,)."""
 
 
 def fans_of(mesh: Connectivity) -> Fans:

@@ -1,8 +1,8 @@
-"""Vectors in rows of four numbers, whose last is zero.
+"""Vectors in rows of four numbers, the last of which is zero.
 
 A processor reads, adds and writes four single-precision numbers at once, but three numbers one by
-one. Kernels compiled with `njit(lanes=True)` take vectors from such rows. They read all that a
-result needs before they write it. The results have the bits of computations with three numbers.
+one. Kernels compiled with `njit(lanes=True)` take vectors from such rows. They read all inputs of a
+result before they write it. The results equal computations with three numbers to the last bit.
 """
 
 import numpy as np
@@ -12,7 +12,9 @@ from ...jit import njit
 from .vectors import ONE, WIDTH, Number, is_held
 
 LANE_COUNT = 4
-"""Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
+"""Columns of a row. A kernel that asserts this width is faster, because the compiler knows the row
+stride.
+"""
 
 Lanes = tuple[np.float32, np.float32, np.float32, np.float32]
 """Three numbers and zero."""

@@ -1,11 +1,11 @@
-"""Vertex normals, which show bends and take the light.
+"""Vertex normals, which measure bends and shade the surface.
 
 They are weighted by area: the cross products of the incident triangles, summed and normalised.
-(Kähler, Haber, Seidel 2003, name no weights; this choice needs none and lets large triangles
-decide.)
+(Kähler, Haber, Seidel 2003, name no weights; unweighted cross products are simplest, and large
+triangles count most.)
 
 Edge vectors are taken in double precision, and all else in single, so a mesh far from the origin
-loses nothing. Normals at rest and in a frame come from the same code: see criterion.py.
+loses no precision. Normals at rest and in a frame come from the same code: see criterion.py.
 """
 
 import numpy as np
@@ -39,8 +39,8 @@ def cross_product(positions: Floats64, a: np.uint32, b: np.uint32, c: np.uint32)
 def normalise(vectors: Floats32) -> None:
     """Bring vectors, shape (V, 3), to length one; zero vectors stay zero.
 
-    The loop has no branch, so it takes several vectors at a time. A second loop takes the vectors
-    whose squares single precision does not hold, one by one.
+    The loop has no branch, so the compiler vectorises it. A second loop treats the vectors whose
+    squares single precision cannot represent, one by one.
     """
     assert vectors.shape[1] == WIDTH
     left_count = 0

@@ -1,4 +1,4 @@
-r"""The rule for the vertices of the input: their neighbours and their weights.
+r"""The rule that moves input vertices: their neighbours and weights.
 
 Kähler, Haber, Seidel 2003, Fig. 3 right, with Warren's weights (Warren 2001) in place of Loop's:
 
@@ -23,7 +23,7 @@ from .connectivity import Connectivity
 BORDER_OWN_WEIGHT = 3 / 4
 """Vertex on a border curve (Fig. 3, bottom right)."""
 NEAR_COUNT = 8
-"""Vertices of a ring that the table holds."""
+"""Number of vertices of a ring in the table of width 8."""
 BORDER_RING_WEIGHT = 1 / 8
 """Its two neighbours on the curve (Fig. 3, bottom right)."""
 
@@ -32,9 +32,9 @@ class Rings(NamedTuple):
     """Rings and weights of the vertex rule: own x itself + ring x (sum over its ring).
 
     A ring has the neighbours along all edges, or, for a vertex on a border curve, along the border
-    only. Most rings have at most eight vertices. They are filled up to eight with the vertex
-    itself, and its own weight is smaller in return: a loop with exactly eight steps is three times
-    as fast. Compiled code takes this tuple as it is.
+    only. Most rings have at most eight vertices. Shorter rings are filled up to eight with the
+    vertex itself, and its own weight is reduced accordingly, because a loop of exactly eight steps
+    is three times as fast. Compiled code takes this tuple.
     """
 
     own: Floats32
@@ -44,7 +44,7 @@ class Rings(NamedTuple):
     near: Unsigned32
     """The first eight vertices of the ring, shape (V, 8)."""
     starts: Unsigned32
-    """Places of the further ones: `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
+    """Further vertices of the ring are `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
     others: Unsigned32
     """Vertices of the rings after the eighth."""
 

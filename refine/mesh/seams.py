@@ -1,4 +1,4 @@
-r"""Texture seams, where corners of one vertex look different; and a weld of doubled vertices.
+r"""Texture seams, where corners of one vertex have different data; and a weld of doubled vertices.
 
 `faces` give the vertex of a corner, `face_uv` its texture coordinate. Geometry is computed per
 vertex and edge; the output needs one row per
@@ -21,7 +21,7 @@ from ...geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned
 from .validation import checked_mesh, size_of, used_vertices
 
 SAME_PLACE = 1e-9
-"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones: a place computed
+"""Vertices no farther apart than this, in sizes of the mesh, count as doubled: a place computed
 twice, for example by sin(0) and sin(2 pi), differs in its last bits.
 """
 LAST_BITS = 2.0
@@ -36,7 +36,7 @@ def find_seams(
     vertex_count: int,
     face_uv: npt.NDArray[np.integer] | None,
 ) -> dict[str, npt.NDArray[Any]]:
-    """Wedges and attribute edges: vertices and edges, followed by their copies along seams."""
+    """Find wedges and attribute edges: vertices and edges, followed by their copies along seams."""
     edge_count = len(edges)
     none = np.uint32(2 * edge_count)
     is_proper = edge_of >= 0
@@ -77,8 +77,8 @@ def find_seams(
 def number_by_first_use(keys: Integers64) -> tuple[Integers64, Integers64]:
     """Give equal keys the same number, in the order in which they first appear.
 
-    Returns the number of every key, and the place of the first use of every number. This order
-    keeps neighbours in the mesh near each other in memory.
+    Returns the number of every key, and the place of the first use of every number. With this order
+    neighbours in the mesh are near each other in memory.
     """
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
@@ -90,18 +90,19 @@ def number_by_first_use(keys: Integers64) -> tuple[Integers64, Integers64]:
 def weld(
     positions: npt.ArrayLike, faces: npt.ArrayLike, *, tolerance: float | None = None
 ) -> tuple[Integers32, Integers32]:
-    """Merge vertices at one place: for meshes whose vertices were doubled along seams.
+    """Merge vertices at the same place, for meshes whose vertices were doubled along seams.
 
     `positions`: shape (V, 3); `faces`: shape (F, 3); `tolerance`: largest distance of vertices that
-    become one, in sizes of the mesh (longest sides of its box); 0 joins only those that are equal
-    to the last bit. None, the default, is `SAME_PLACE`, or the last bits of the positions' type if
-    these are more. Returns one vertex of each place, shape (K,), and the triangles in terms of
-    them, shape (F, 3). Bind the refiner to these triangles with `rest_positions[vertices]`; pass
-    the texture coordinates of the doubled vertices as `uv`, the original triangles as `face_uv`,
-    and `positions[vertices]` in every frame. A vertex that no triangle uses stays separate.
+    become one, in sizes of the mesh (longest sides of its box); 0 joins only vertices that are
+    equal to the last bit. None, the default, is `SAME_PLACE`, or a few rounding steps of the
+    positions' type if these are more. Returns one vertex of each place, shape (K,), and the
+    triangles in terms of them, shape (F, 3). Bind the refiner to these triangles with
+    `rest_positions[vertices]`; pass the texture coordinates of the doubled vertices as `uv`, the
+    original triangles as `face_uv`, and `positions[vertices]` in every frame. A vertex that no
+    triangle uses stays separate.
 
-    It never happens without this call: closed lips touch at rest and must not be welded. Raises
-    ValueError for arrays that do not fit together, and for positions that are not finite.
+    Vertices are welded only by this call, because closed lips touch at rest and must not be welded.
+    Raises ValueError for arrays that do not fit together, and for positions that are not finite.
     """
     points, corners = checked_mesh(positions, faces, ("positions", "faces"))
     used = np.flatnonzero(used_vertices(corners, len(points)))
@@ -121,10 +122,10 @@ def weld(
 
 
 def number_places(points: Floats64, distance: float) -> Integers64:
-    """Number points, shape (N, 3), so that points at one place have one number.
+    """Number points, shape (N, 3), so that points at the same place have the same number.
 
-    Points are at one place if they are at most `distance` apart, or if a chain of such points joins
-    them.
+    Points are at the same place if they are at most `distance` apart, or if a chain of such points
+    joins them.
     """
     places, numbers = np.unique(points, axis=0, return_inverse=True)
     pairs = _near_pairs(places, distance) if distance > 0.0 and len(places) > 0 else None
@@ -140,7 +141,7 @@ def number_places(points: Floats64, distance: float) -> Integers64:
 
 
 def _near_pairs(places: Floats64, distance: float) -> Integers64:
-    """Pairs of different places not farther apart than `distance`, shape (P, 2).
+    """Return pairs of different places not farther apart than `distance`, shape (P, 2).
 
     Places are sorted into cubes, some times larger than the distance. A place within this distance
     of a cube's side is also sorted into the next cube.

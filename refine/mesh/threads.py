@@ -1,12 +1,12 @@
-"""Loops over large meshes, shared among threads; loops over small meshes stay in their thread.
+"""Loops over large meshes are shared among threads; loops over small meshes run in one thread.
 
 A kernel is called as kernel(first, last, ...). It writes the results of the items from first to
-last, and reads no result of other items. So a frame has the same bits for any number and order of
-threads.
+last, and reads no result of other items. So a frame is equal to the last bit for any number and
+order of threads.
 
 Each free thread takes the next part of a loop. If a core is busy with other work, the other cores
-do its parts, and no thread waits for one that has not begun. There are as many threads as numba
-would take: one for each core, or the number in NUMBA_NUM_THREADS.
+do its parts, and no thread waits for one that has not begun. The number of threads is numba's
+default: one for each core, or the number in NUMBA_NUM_THREADS.
 """
 
 import os
@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
 ITEMS_OF_PART = 1 << 15
-"""Items of a loop that are worth a thread's waking, which takes a tenth of a millisecond."""
+"""Least number of items for which waking a thread is worth its tenth of a millisecond."""
 PARTS_OF_THREAD = 4
 """Parts of a thread's share of the work, so that a slow thread delays the others only a little."""
 

@@ -1,7 +1,7 @@
-"""Checks of given positions and triangles, with errors that name the remedy.
+"""Checks of the caller's positions and triangles, with errors that name the remedy.
 
-All raise ValueError, which names the argument, its value and the allowed values. Arrays that pass
-are copied, so that later changes to the caller's arrays cannot reach a frame.
+All checks raise ValueError with the argument, its value and the allowed values. Arrays that pass
+are copied, so that later changes to the caller's arrays have no effect.
 """
 
 from typing import Any
@@ -13,7 +13,7 @@ from ...geometry.arrays import Flags, Floats32, Floats64, Integers64
 from ...jit import njit
 
 LARGEST_COORDINATE = 1e15
-"""No coordinate may be larger: cross products of edges have to stay finite in single precision."""
+"""Largest allowed coordinate: cross products of edges must be finite in single precision."""
 MESH_SIZES = 1e-6, 1e9
 """Range of a mesh's size, the longest side of its box, in which normals are more than rounding.
 Measured:
@@ -31,7 +31,7 @@ def checked_mesh(
     """Return positions, shape (V, 3), in double precision, and triangles, (F, 3), as copies.
 
     Points that no triangle uses may have any place, and may be NaN: these get the place of the
-    first used point. `names`: those of the two arguments, for errors.
+    first used point. `names`: names of the two arguments, for errors.
     """
     name = names[0]
     given = as_array(name, positions, "numbers of shape (V, 3)")
@@ -145,7 +145,7 @@ def take_positions(
 def take_positions_like_rest(
     positions: npt.ArrayLike, is_used: Flags, own: Floats64, points: Floats32
 ) -> None:
-    """The same, with the user's array already compared with `own`, (V, 3), in shape and type."""
+    """Do the same for an array that has the shape and type of `own`, (V, 3)."""
     given = np.asarray(positions)
     if given.shape != own.shape or given.dtype.kind != "f":
         raise ValueError(

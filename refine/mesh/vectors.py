@@ -1,4 +1,4 @@
-"""Vectors of three numbers, as kernels take them: tuples, and rows of arrays."""
+"""Vectors of three numbers in kernels: tuples, and rows of arrays."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ THREE_QUARTERS = np.float32(0.75)
 TINY = np.finfo(np.float32).tiny
 SHORT_SQUARE = np.float32(1e-30)
 LONG_SQUARE = np.float32(1e37)
-"""Range of squared lengths in which single precision holds a length to the last bit."""
+"""Range of squared lengths in which single precision represents a length to the last bit."""
 
 
 @njit
@@ -47,7 +47,7 @@ def plus(u: Vector, v: Vector) -> Vector:
 
 @njit
 def less(u: Vector, share: Any, v: Vector) -> Vector:
-    """Vector u less a share of v."""
+    """Return vector u minus a share of v."""
     return u[0] - share * v[0], u[1] - share * v[1], u[2] - share * v[2]
 
 
@@ -60,7 +60,7 @@ def times(share: Any, v: Vector) -> Vector:
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
     """The vector at a share of the way from start to end; exactly one of them at 0 and at 1."""
-    if share == ONE:  # points of frames without blending have gone all the way
+    if share == ONE:  # without blending, points are always at their final positions
         return end
     return plus(times(ONE - share, start), times(share, end))
 
@@ -76,7 +76,7 @@ def unit(v: Vector) -> Vector:
 
 @njit
 def is_held(squared: Any) -> Any:
-    """Whether single precision holds the square of a length; asked without a branch."""
+    """Return whether single precision can represent the square of a length, without a branch."""
     return (SHORT_SQUARE < squared) & (squared < LONG_SQUARE)
 
 
@@ -121,6 +121,6 @@ def difference(positions: Floats64, a: Number, b: Number) -> Vector:
 
 @njit
 def between(positions: Floats64, a: Number, b: Number) -> Vector:
-    """The vector from a to b, rounded when it has been taken."""
+    """Return the vector from a to b, rounded after the subtraction."""
     x, y, z = difference(positions, a, b)
     return np.float32(x), np.float32(y), np.float32(z)
