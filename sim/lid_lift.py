@@ -1,10 +1,10 @@
-"""How near a closed lid lies to the eyeball, and how far it is lifted lest the ball show through.
+"""How near a closed lid lies to the eyeball, and how far it is lifted to cover the ball.
 
 Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But the
-triangle between three vertices is flat, and the cornea stands out of the ball: on a coarse mesh the
-two would cut through each other. So the lids are closed once when a face is built. Where a triangle
-then cuts the eyeball, its corners on the upper lid move outward, each by its share in the deepest
-point. The lower lid hardly moves, and keeps its form.
+triangle between three vertices is flat, and the cornea protrudes from the ball, so triangles of a
+coarse mesh would intersect the ball. So the lids are closed once when a face is built. If a
+triangle then intersects the eyeball, its corners on the upper lid move outward, each by its share
+in the deepest point. The lower lid hardly moves when it closes, and keeps its form.
 
 Source: own; projection by shares as in Müller et al. 2007, "Position based dynamics", section 3.
 """
@@ -24,13 +24,13 @@ LIFT_TOLERANCE = 1e-3  # mm
 
 
 def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) -> Floats64:
-    """How much nearer to the eyeball skin of a shut upper lid lies [mm], shape (V,).
+    """Return how much nearer to the eyeball the skin of a closed upper lid lies [mm], shape (V,).
 
-    Skin of the fold turns at a distance of its own from the eyeball. Unless it also sinks, a shut
-    lid is a pouch before the ball, whose lower side hangs over the lashes.
+    Skin of the fold is farther from the eyeball than the margin. Without this sinking, a closed lid
+    would form a pouch in front of the ball that hangs over the lashes.
 
     x: vertices at rest (V, 3). column: places from the outer corner of the eye, 0, to the inner
-    one, 1, shape (V,). share: of the margin's turn, shape (V,).
+    one, 1, shape (V,). share: how far each vertex follows the turn of the margin, shape (V,).
     """
     thickness = 2.2  # [mm] of skin, muscle and plate, from the eyeball to the front of a lid
     most_sunk = 5.0  # [mm]
@@ -43,7 +43,7 @@ def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) 
 def lift_off(
     x: Floats64, rest: Floats64, faces: Integers32, moves: Floats64, ball: Eyeball
 ) -> Floats64:
-    """How far each vertex of a closed lid must move outward [mm], shape (V,).
+    """Return how far each vertex of a closed lid must move outward [mm], shape (V,).
 
     x, rest: vertices with the lid closed, and at rest (V, 3); skin inside the ball at rest may stay
     there. moves: 1 for vertices of the upper lid, else 0, shape (V,).
@@ -57,9 +57,9 @@ def lift_off(
     lift = np.zeros(len(x))
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
-    least_share = 0.5  # of a point, that corners on the upper lid have together if they move for it
+    least_share = 0.5  # least total share of the upper lid's corners in a point for which they move
     kept[moves[faces] @ shares.T < least_share] = -np.inf
-    most_passes = 30  # at most: triangles share corners, so lifts are repeated
+    most_passes = 30  # most repetitions, needed because triangles share corners
     for _ in range(most_passes):
         points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
         deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
@@ -74,7 +74,7 @@ def lift_off(
 
 
 def _shares() -> Floats64:
-    """Shares of the corners in points all over a triangle, shape (S, 3)."""
+    """Return the barycentric coordinates of points all over a triangle, shape (S, 3)."""
     edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
     n = edge_steps
     ways = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
@@ -82,7 +82,7 @@ def _shares() -> Floats64:
 
 
 def _reach(points: Floats64, radius: float) -> Floats64:
-    """Distance of an eyeball's surface from its centre towards `points` (..., 3).
+    """Distance of an eyeball's surface from its centre in the directions of `points` (..., 3).
 
     The eye looks straight ahead.
     """

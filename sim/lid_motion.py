@@ -1,6 +1,6 @@
 """The compiled motion of the lids: the far ends of their tissue springs turn about the eyeballs.
 
-lids.py explains the motion, and finds the vertices that take part in it.
+lids.py explains the motion, and finds the vertices that move.
 """
 
 from __future__ import annotations

@@ -2,24 +2,25 @@
 
 Each lid vertex turns about the axis through the centre of the eyeball that runs from corner to
 corner of the eye. Angles are measured per column of the eye opening (between its corners). Each
-vertex has the turn that brings it to the line where the lids meet (`closing`), and a share in the
+vertex has the angle that brings it to the line where the lids meet (`closing`), and a share in the
 motion of the open lid (`fold`). It turns by
 
     close closing + (1 - close) fold (raise + gaze)
 
 so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. All
 skin between the front edges of the lids moves to one line. A margin is as thick as skin, so lids
-that met with a slanted margin would leave a groove, in which the cornea shows. The open lid takes
-the fold under the brow along, because levator palpebrae ends in both. The fold is held only while
-it moves, so that the brow can come down on it. A shut upper lid is held twice as firmly: its muscle
-presses it down, and a brow that rises does not draw it open. A closing lid slides towards the nose,
-where its ring of fibres is fixed. A raised lid slides a little away from the nose. Both lids follow
-the gaze a little to the side, because the cornea draws them. The lids of each eye follow the gaze
-of that eye alone. The turn fades from the margin to the edge of the lid. It moves the tissue
-springs' far ends, not the skin: skin still slides and is still kept off the eyeball.
+that met with a slanted margin would leave a groove, in which the cornea shows. The open lid moves
+the fold under the brow along, because levator palpebrae inserts in both. The fold is held only
+while it moves, so that the brow can come down on it. A closed upper lid is held twice as firmly,
+because its muscle presses it down; so a rising brow does not open it. A closing lid slides towards
+the nose, where its ring of fibres is fixed. A raised lid slides a little away from the nose. Both
+lids follow the gaze a little to the side, because the cornea draws them. The lids of each eye
+follow the gaze of that eye alone. The turn fades from the margin to the edge of the lid. The turn
+moves the far ends of the tissue springs instead of the skin, so skin still slides and is still kept
+off the eyeball.
 
-Source: own; the papers close the eye by a sphincter, which does not follow the eyeball. Angles
-from the visible lid margins.
+Source: own; the papers close the eye by a sphincter, and skin then does not follow the eyeball.
+Angles from the visible lid margins.
 """
 
 from __future__ import annotations
@@ -111,9 +112,9 @@ def place_lids(
 
 
 def gaze_share_of(radius: float) -> float:
-    """Share of a gaze that lids follow, for an eyeball of this radius [mm].
+    """Return the share of a gaze that lids follow, for an eyeball of this radius [mm].
 
-    On a ball larger than a human's they move as far as on a human's: artists put such balls behind
+    On a larger ball lids move as far as on a human ball, because artists put larger balls behind
     openings of human width.
     """
     most_radius = 12.8  # mm
@@ -121,7 +122,7 @@ def gaze_share_of(radius: float) -> float:
 
 
 def _lift(lids: LidVertices, surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> Floats64:
-    """How far each lid vertex must be lifted [mm], shape (L,), when all eyes are closed."""
+    """Return how far each lid vertex must be lifted [mm], shape (L,), when all eyes are closed."""
     state = State.at_rest(surface)
     closed = np.zeros((len(eyeballs), len(LIDS)))
     closed[:, 0] = 1.0
@@ -150,7 +151,7 @@ class _OneEye(NamedTuple):
 
 
 def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Floats64]:
-    """Directions up and forward, both across the line from one eye corner to the other."""
+    """Directions up and forward, both normal to the line from one eye corner to the other."""
     outer, _, _, inner, _, _ = EYE_LANDMARKS[ball.side]
     along = (landmarks[outer] - landmarks[inner]) * ball.side.sign
     along = along / np.linalg.norm(along)
@@ -161,7 +162,7 @@ def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Float
 
 
 class _LidAxes(NamedTuple):
-    """Places of points about the line from the outer corner of an eye to the inner one."""
+    """Coordinates of points relative to the line from the outer to the inner corner of an eye."""
 
     centre: Floats64  # of the eyeball
     up: Floats64
@@ -189,7 +190,7 @@ def _one_eye(
     forward: Floats64,
     even: Smooth,
 ) -> _OneEye:
-    """Find the lids of one eye and the turn of each of their vertices."""
+    """Find the lids of one eye, and the turn of each lid vertex."""
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
     outline = landmarks[list(EYE_LANDMARKS[ball.side])]
@@ -224,7 +225,7 @@ def _one_eye(
     closing[margins] = (meeting - angle)[margins]
     closing = _evened(even, closing, np.minimum(upper.distance, lower.distance), margins)
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
-    corner_share = 0.5  # of the open lid's motion remains at the corners: their ligaments stretch
+    corner_share = 0.5  # share of the open lid's motion at the corners, whose ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
     at_middle = corner_share + (1.0 - corner_share) * rounded
     fold = before * (upper.fold + lower.fold) * at_middle
@@ -233,7 +234,7 @@ def _one_eye(
     sink = _proud_sink(upper, lower, column, full) * is_upper * weight
     margin_turn = np.maximum(np.interp(column, where, upper.front - seam), 0.1)
     sink += is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
-    least_turn = 1e-3  # vertices that move less are not lid
+    least_turn = 1e-3  # vertices that move less do not belong to the lids
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * _pressed_turn(opening, least_opening)
@@ -242,7 +243,7 @@ def _one_eye(
 
 
 def _proud_sink(upper: _OneLid, lower: _OneLid, column: Floats64, full: Floats64) -> Floats64:
-    """How far the margin of a closed upper lid sinks to lie on the lower one [mm], shape (V,)."""
+    """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
     where = np.linspace(0.0, 1.0, COLUMNS)
     proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
@@ -251,10 +252,10 @@ def _proud_sink(upper: _OneLid, lower: _OneLid, column: Floats64, full: Floats64
 
 
 def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
-    """Share of each vertex in the slide, shape (V,), by the opening of the eye in its column.
+    """Return the share of each vertex in the slide, shape (V,), from the eye's opening there.
 
-    near: the share by the distance from the lids (V,). full: opening by column, 1 where it is
-    widest. Skin beyond a corner slides, too, or it would fold there.
+    near: share from the distance to the lids (V,). full: opening by column, 1 where it is widest.
+    Skin beyond a corner also slides, or it would fold there.
     """
     slide_beyond = 0.2  # widths of the opening
     beyond = np.maximum(np.abs(column - 0.5) - 0.5, 0.0)
@@ -288,8 +289,8 @@ def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Fla
 def _evened(even: Smooth, closing: Floats64, distance: Floats64, margins: Flags) -> Floats64:
     """The turn [rad] of each vertex, smoothed beyond the margins, because skin is a sheet.
 
-    Without this, neighbours beside the corners turn by half as much, and a closed lid is a box with
-    walls.
+    Without smoothing, neighbours beside the corners would turn by half as much, and a closed lid
+    would have steep sides.
 
     distance: from the nearest front edge [mm], shape (V,).
     """
@@ -300,7 +301,7 @@ def _evened(even: Smooth, closing: Floats64, distance: Floats64, margins: Flags)
 
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
-    """How far closed lids are pressed into each other [rad], by the opening of the eye there."""
+    """Return how far closed lids overlap [rad], from the opening of the eye there."""
     wide_opening = 0.3  # rad: from this opening on they are pressed in full
     most_turn = 0.11  # rad (1.4 mm)
     width = (opening - least_opening) / (wide_opening - least_opening)
@@ -308,7 +309,7 @@ def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
 
 
 def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
-    """The seam [rad] by column without a step at a corner that lies above the lower lid's edge.
+    """Return the seam [rad] by column, raised beside a corner that lies above the lower lid's edge.
 
     Lids that meet below such a corner leave a notch beside it. upper: front edge of the upper lid.
     """
@@ -360,7 +361,7 @@ def _one_lid(
 
 
 def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Floats64:
-    """The way along the mesh that stays near a lid's line of landmarks (4, 3), points (n, 3)."""
+    """Return the path along the mesh near a lid's line of landmarks (4, 3), points (n, 3)."""
     x = surface.positions
     reaches = np.linalg.norm(line - axes.centre, axis=1)
     order = np.argsort(axes.column(line))
@@ -372,21 +373,21 @@ def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Floats6
 
 
 def _smoothed(height: Floats64) -> Floats64:
-    """The opening by column, with soft ends: skin away from the margin must not crease there."""
+    """Opening by column, smoothed at the ends so that skin off the margin does not crease."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
     return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])
 
 
 def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
-    """1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
+    """Return Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
     return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))
 
 
 def _lid_muscles(
     rig: Rig, eyeballs: tuple[Eyeball, ...], names: list[str]
 ) -> tuple[tuple[int, int, int, float], ...]:
-    """Control, eye, action and travel of each lid muscle; an unpaired one moves both eyes."""
+    """Control, eye, action and travel of each lid muscle; an unpaired muscle moves both eyes."""
     found = []
     for muscle in rig.muscles:
         if isinstance(muscle, LidMuscle):

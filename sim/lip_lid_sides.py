@@ -1,8 +1,8 @@
 """Which side of the mouth and of an eye each vertex lies on.
 
 Closed lips and lids are a millimetre apart, so distance in space does not separate upper from
-lower, but the way along the skin does. From a vertex of the upper lip the upper lip's landmarks are
-near, and the way to the lower lip's leads around the mouth corner.
+lower, but distance along the skin does. From a vertex of the upper lip, the upper lip's landmarks
+are near, and the path to the lower lip's landmarks leads around the mouth corner.
 
 Source: our own; the gates of Kähler et al. 2001 are painted by hand.
 """
@@ -22,8 +22,8 @@ def lip_side(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     lower = _distance(surface, landmarks, LOWER_LIP)
     lip_reach = 20.0  # mm from the middle of a lip within which skin belongs to it
     inside = np.flatnonzero(np.minimum(upper, lower) < lip_reach)
-    # On a lip the two ways differ by about twice the distance to the mouth corner: there they are
-    # alike, except for the lips' shape.
+    # On a lip the two path lengths differ by about twice the distance to the mouth corner; at the
+    # corner they are equal, except for the lips' shape.
     longer = lower - upper
     longer = longer - longer[surface.nearest(landmarks[list(INNER_CORNERS)])].mean()
     corner_fade = 10.0  # mm from the mouth corner where a lip moves fully on its own
@@ -52,6 +52,6 @@ def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def _distance(surface: SkinSurface, landmarks: Floats64, numbers: tuple[int, ...]) -> Floats64:
-    """Way along the skin [mm] to the nearest of some landmarks; far where there is no way."""
+    """Distance along the skin [mm] to the nearest landmark; a large number without a path."""
     start = surface.nearest(landmarks[list(numbers)]).astype(np.int64)
     return np.minimum(surface.distances_from(start), 1e3)

@@ -1,14 +1,14 @@
 """From contraction values to forces: one anchor per skin vertex, summed over active muscles.
 
-Every attached vertex hangs on its muscle by a spring of stiffness k w A (muscle, attachment weight,
-skin area). At activation a the spring is tightened from a passive share p to its full stiffness
-and its far end is displaced:
+Every attached vertex hangs on its muscle by a spring of stiffness k w A (k of the muscle,
+attachment weight w, skin area A). At activation a the stiffness grows from a passive share p to its
+full value, and the far end is displaced:
 
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
 
 r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
-the displacement that is linear in a (rings, bulge, convergence to the fibre line). Where a muscle
-lies on others, r is also carried by them: by the mean displacement of its fibres, weighted by w_f
+the displacement that is linear in a (rings, bulge, convergence to the fibre line). If a muscle lies
+on others, r also moves with the mean displacement of its fibres by those others, weighted by w_f
 (muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
 same for one muscle and for fifty.
 
@@ -57,7 +57,7 @@ class SkinAttachments(NamedTuple):
     """How the skin hangs on M muscles and on their B lines."""
 
     muscle: Integers32  # (B,) number of each line's muscle
-    passive: Floats64  # (M,) share of the stiffness that is there at rest
+    passive: Floats64  # (M,) share of the stiffness at rest
     holds: Attachments  # by muscle
     pulls: Attachments  # by line, places in samples
     carries: Attachments  # by line, places in points
@@ -69,14 +69,14 @@ class MuscleForces:
 
     names: tuple[str, ...]  # names of the M muscles' controls
     opens_lips: Floats64  # (M,)
-    reaches_lips: Floats64  # (M,) greatest attachment to the edge of a lip, 0..1
+    reaches_lips: Floats64  # (M,) greatest attachment weight at a lip edge, 0..1
     bundle: FibreBundle
     stack: Stack
     skin: SkinAttachments
     rings: tuple[tuple[int, Ring], ...]  # muscle, and its ring
 
     def hold_of(self, share: Floats64, vertex_count: int) -> Floats64:
-        """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
+        """Return the stiffness per vertex, shape (V,), of muscles scaled by `share` (M,)."""
         holds = self.skin.holds
         weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
         hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
@@ -95,7 +95,7 @@ class MuscleForces:
     def lines(
         self, activation: Floats64, mandible: RigidMotion, state: State
     ) -> dict[str, list[Floats64]]:
-        """Polylines [mm] to draw: contracted fibres of linear muscles, rows of skin along rings."""
+        """Polylines [mm] to draw: contracted fibres of linear muscles, skin along sphincters."""
         lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         rings = dict(self.rings)
@@ -190,7 +190,7 @@ def _bundle(
 
 
 def _gain(line: Line) -> float:
-    """The gain of a line's pull; a sphincter pulls on no line."""
+    """Return the gain of a line's pull; 0 for a sphincter."""
     return 0.0 if line.fibre is None else line.fibre.gain
 
 
@@ -198,7 +198,7 @@ Part = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the
 
 
 def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64) -> list[Part]:
-    """How skin hangs on each line that pulls, gain included, places in samples."""
+    """Return how skin hangs on each line that pulls, including the gain; places in samples."""
     return [
         (
             placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
@@ -212,16 +212,16 @@ def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Float
 def _carries(
     placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64, stack: Stack
 ) -> list[Part]:
-    """How skin hangs on each line where it lies on others, places in points.
+    """Return how skin hangs on each line that lies on others; places in points.
 
-    Among the lines of a muscle, the one that holds a vertex most carries it.
+    A vertex is carried by the line of the muscle that holds it most.
     """
     line_count = len(stack.rows) - 1
     lies = np.zeros((line_count, FIBRE_POINTS), dtype=np.bool_)
     line_of_row = np.repeat(np.arange(line_count), np.diff(stack.rows))
     lies[line_of_row, stack.point] = True
     parts: list[Part] = []
-    least_carried = 0.05  # likewise for attachments by which one muscle carries the skin of another
+    least_carried = 0.05  # the same for attachments by which one muscle carries the skin of another
     nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:
         lines = placed[n].lines
@@ -248,7 +248,7 @@ def _carries(
 def _attachments(
     parts: list[tuple[Floats64, Floats64]], least: Floats64, empty: Floats64
 ) -> Attachments:
-    """Lay the vertices of each part (weight, value) that matter end to end."""
+    """Concatenate the vertices of each part (weight, value) above a limit."""
     on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(
@@ -292,7 +292,7 @@ def gather_holds(
             hold[i] += grip * holds.weight[row]
             for k in range(3):
                 steady[i, k] += scale * holds.value[row, k]
-    # Displacements that belong to the mandible turn with it: once per vertex, not per attachment.
+    # Displacements of skin on the mandible turn with it, once per vertex instead of per attachment.
     for i in range(len(steady)):
         sx = steady[i, 0]
         sy = steady[i, 1]
@@ -306,7 +306,7 @@ def gather_holds(
 def gather_lines(
     force: Floats64, activation: Floats64, skin: SkinAttachments, motion: LineMotion
 ) -> None:
-    """Add the pull of all lines that contract, or that others carry, to `force` (V, 3)."""
+    """Add the pull of all lines that contract, or are carried by others, to `force` (V, 3)."""
     muscle = skin.muscle
     passive = skin.passive
     pulls = skin.pulls

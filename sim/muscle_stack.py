@@ -8,11 +8,11 @@ displacement of that line by the muscles beneath it. The point moves by
 
     o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
 
-So a point on one muscle follows it all the way, and a point on the border of two follows their
-mean. The fibre contracts along the moved points. The displacement o carries its skin
+So a point on one muscle follows it fully, and a point on the border of two follows their mean. The
+fibre contracts along the moved points. The displacement o carries the skin of the fibre
 (muscle_forces.py), whether the fibre contracts or not: the relaxed zygomaticus does not hold the
-cheek back while the buccinator bulges under it. A muscle at rest carries nothing. Lines are moved
-from below, each after the lines beneath it; rig.py refuses circles.
+cheek back while the buccinator bulges under it. A muscle at rest moves nothing. Each line is moved
+after the lines beneath it; rig.py refuses circles.
 
 Source: Kähler et al. 2001, section 4 (muscles attached to muscles). The order of muscles: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
@@ -34,12 +34,12 @@ from .surface import SkinSurface
 
 
 def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
-    """Numbers of the muscles in an order in which each comes after those that it lies on."""
+    """Return the numbers of the muscles, each after the muscles that it lies on."""
     muscles = {at.muscle.name: at.muscle for at in placed}
     heights: dict[str, int] = {}
 
     def height(name: str) -> int:
-        """Number of muscles in the tallest stack up to this one."""
+        """Return the number of muscles in the tallest stack up to this muscle."""
         if name not in heights:
             heights[name] = 1 + max((height(n) for n in muscles[name].lies_on), default=0)
         return heights[name]
@@ -73,7 +73,7 @@ def stack_muscles(
 
 
 def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
-    """Whether one lies on the other: a muscle of a pair on that of its own side."""
+    """Return whether one muscle lies on the other; muscles of pairs only on the same side."""
     is_beside = below.muscle.pair and above.muscle.pair and below.side is not above.side
     return below.muscle.name in above.muscle.lies_on and not is_beside
 
@@ -96,7 +96,7 @@ def _carried(
     places: AttachedPoints,
     at: Integers64,
 ) -> _Carried:
-    """Hang points with the numbers `at` on a muscle, each on the line that holds it most.
+    """Attach points with the numbers `at` to a muscle, each to the line that holds it most.
 
     first: number of the muscle's first line.
     """
@@ -132,7 +132,7 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
     np.add.at(held, joined.at, joined.weight)
     most = np.maximum(held, 1.0)[joined.at]
     share = joined.weight / most
-    least_share = 0.02  # of a displacement: less carries nothing
+    least_share = 0.02  # share of a displacement; smaller shares are dropped
     on = np.flatnonzero(share > least_share)
     owner, point = np.divmod(joined.at[on], FIBRE_POINTS)
     sorting = np.lexsort((point, joined.line[on], owner))

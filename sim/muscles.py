@@ -1,8 +1,8 @@
-"""Muscles: a rig's fibres and sphincters are laid into a face, and the skin is attached to them.
+"""Muscles: place a rig's fibres and sphincters in a face, and attach the skin to them.
 
 Linear muscles attach the skin around each of their fibres (fibres.py). Sphincters draw skin on an
 elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the lips makes them
-protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract. A
+protrude. Upper and lower half are separate muscles. Both kinds bulge the skin as they contract. A
 muscle that lies on another is attached to it in the same way (muscle_stack.py).
 
 Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging.
@@ -37,7 +37,7 @@ from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import SkinSurface
 
-Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter: only drawing asks for them
+Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter; used only for drawing
 
 
 class Attachment(NamedTuple):
@@ -83,7 +83,7 @@ class PlacedMuscle:
 def place_muscles(
     rig: Rig, surface: SkinSurface, landmarks: Floats64, lip_side: Floats64
 ) -> tuple[PlacedMuscle, ...]:
-    """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
+    """Place all linear and ring muscles of a rig in a face, in rig order, left before right."""
     skin = AttachedPoints(surface.positions, surface.normals, lip_side)
     laid = _laid_lines(rig, surface, landmarks)
     placed = []
@@ -108,9 +108,9 @@ def place_muscles(
 
 
 def _laid_lines(rig: Rig, surface: SkinSurface, landmarks: Floats64) -> Iterator[Floats64]:
-    """The lines of all muscles in rig order, bent to the skin as far as each wraps around it.
+    """Return the lines of all muscles in rig order, bent to the skin as far as each muscle wraps.
 
-    The skin near all of them is looked up at once.
+    The skin near all lines is found in one search.
     """
     straight = []
     wraps = []
@@ -184,7 +184,7 @@ def attach_to_ring(
     found = Attachment(weight, np.zeros(count), np.zeros((count, 3)))
     found.steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
     x = held.positions
-    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
+    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are equally near
         to_line = np.where(held.lip_side > 0.0, up, down) * np.maximum(1.0 - rho[on], 0.0)
         x = x + (held.lip_side * to_line)[:, None] * UP
     found.arc[on] = arcs_along(points, x)
@@ -194,7 +194,7 @@ def attach_to_ring(
 def _within_ring(
     muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> tuple[Floats64, Floats64]:
-    """How far out places lie, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
+    """Relative radii of places, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
     rear = float(landmarks[[36, 45], 2].mean()) - face_depth
     ellipse = (*_middle(muscle, landmarks, side).tolist(), *muscle.radii)
@@ -217,10 +217,10 @@ def _hold_in_ring(
     rho: Floats64,
     weight: Floats64,
 ) -> None:
-    """Fill what `_within_ring` returns, where a sphincter holds.
+    """Fill the results of `_within_ring` where a sphincter holds.
 
     ellipse: its middle, and its radii to the side, up and down [mm]. edge: falloff outside and
-    inside. arc: side, and `arc_deg` of the muscle. rear: z that the ring does not reach.
+    inside. arc: side, and `arc_deg` of the muscle. rear: z behind which the ring does not reach.
     """
     x, y, _, lateral, up, down = ellipse
     outside, inside = edge
@@ -259,8 +259,8 @@ def _ring_pull(
     pull += (x - centre) @ (turn.T - np.eye(3))
     seam = landmarks[[62, 66], 1].mean()
     mouth_round = 1.08  # half widths of the mouth at which flare and parting end
-    # The flare has the form of an ellipse through the mouth's corners, or an open mouth has
-    # straight edges.
+    # The flare is an ellipse through the mouth's corners, because a uniform flare gives straight
+    # edges.
     corner = mouth_round * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
     place = x[:, 0] / corner
     across = np.sqrt(np.maximum(1.0 - place**2, 0.0))
@@ -272,7 +272,7 @@ def _ring_pull(
 
 
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
-    """Height by which a sphincter lifts places off the mouth line, for a round opening [mm], (n,).
+    """Return how far a sphincter lifts places off the mouth line for a round opening [mm], (n,).
 
     Seen from the front, the opening lies between two parabolas. Outside it the lips touch, so a
     funnel is narrower than the mouth.

@@ -1,33 +1,33 @@
-"""Pull to pose: find the muscles that hold the skin where a finger draws it, an inverse problem.
+"""Pull to pose: find the controls that hold the skin where a finger draws it (inverse kinematics).
 
-The skin under the finger shall stay at its targets when the finger has gone. Few controls shall
-work, and the rest of the face shall stay. Minimise, over the controls u within their limits,
+The skin under the finger should stay at its targets when the finger is gone. Few controls should
+change, and the rest of the face should not move. Minimise, over the controls u within their limits,
 
     sum_i s_i |A (t_i - p_i)|^2 + REST_WEIGHT sum_j a_j |p_j - p_j(0)|^2
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
 i runs over the vertices under the finger, with targets t and shares s that add up to 1; d is the
 mean distance to the targets. j runs over all other vertices, with areas a relative to that under
-the finger. A weakens distances along the line of sight, which a mouse does not set. Prices keep
-controls moderate. Few controls are used: first the one that reduces the sum most, then the one that
-reduces it most together with the first, and so on, by slopes at the start. So targets alone decide
-on controls, not the path of the finger: the pose during the motion is the pose that stays. A target
-beyond the reach of the strongest control in this direction is brought back to that reach: prices
-grow with d, and farther out no control would be worth its price.
+the finger. A reduces distances along the line of sight, which a mouse does not determine. Prices
+keep controls moderate. Few controls are used: first the control that reduces the sum most, then the
+control that reduces it most together with the first, and so on, by slopes at the start. So the
+controls depend only on the targets, not on the path of the finger: the pose during the motion is
+the pose that stays. A target beyond the reach of the strongest control in this direction is moved
+back to that reach, because prices grow with d: farther out no control would be worth its price.
 
-Prices, and the skin that shall stay, keep the skin from reaching the mouse. So all changes grow by
-one factor at the end, until the finger's middle is as near to the mouse as this mixture can bring
-it, or until a control is at its limit. One factor keeps the mixture: a smile that is drawn too far
-remains a smile.
+Because of prices and of the rest of the face, the skin does not quite reach the mouse. So in the
+end all changes are multiplied by one factor, until the finger's middle is as near to the mouse as
+possible, or until a control is at its limit. One factor keeps the ratios of controls: a smile that
+is drawn too far remains a smile.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
-lag, so that takes six steps of 0.3 ms. It includes effects that the tangent of the springs lacks:
+lag, so this takes six steps of 0.3 ms. The slopes include effects that the linearised springs lack:
 lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
-Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. Prices make it the
-elastic net (Zou, Hastie 2005), solved along one control after the other (Friedman et al. 2007);
-the factor at the end makes it a relaxed one (Meinshausen 2007).
+Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. With prices the
+problem is an elastic net (Zou, Hastie 2005), solved by coordinate descent (Friedman et al. 2007);
+with the factor at the end it is a relaxed elastic net (Meinshausen 2007).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Pull:
     MOST_CONTROLS = 3  # controls that are used
     ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
 
-    mends: bool  # whether the answer comes nearer to the aims by more than a trace
+    mends: bool  # whether the solution reduces the distance to the aims noticeably
     targets: Floats64  # where the finger draws each of its vertices [head units], shape (n, 3)
 
     def __init__(
@@ -62,10 +62,10 @@ class Pull:
         candidates: Sequence[Names],
         sight: npt.ArrayLike = (0.0, 0.0, 1.0),
     ) -> None:
-        """Begin at the present state of a face, which does not change.
+        """Begin at the present state of a face; the face itself does not change.
 
         vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates: controls
-        that may be used; a tuple holds those that move together, such as both sides of a muscle.
+        that may be used; a tuple holds controls that move together, such as both sides of a muscle.
         sight: direction in which the finger is seen, shape (3,).
         """
         self._base = face.clone()
@@ -87,7 +87,7 @@ class Pull:
         self._given = candidates
         self.candidates = list[Names]()
         self._value = self._start = np.zeros(0)
-        self._drawn = 0.0  # mean square of the way to the aims
+        self._drawn = 0.0  # mean square distance to the aims
         self.mends = False
 
     def _look(self) -> bool:
@@ -107,8 +107,8 @@ class Pull:
             here = np.sqrt(squares)
             motions = np.linalg.norm(self._slope, axis=2)
             largest = motions.max(axis=1, initial=0.0)
-            # Share of a control's largest motion of skin: a control that moves the finger's skin
-            # less is not used.
+            # A control is not used if it moves the finger's skin less than this share of its
+            # largest motion of skin.
             least_motion = 0.1
             is_meant = here > least_motion * largest
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
@@ -121,7 +121,7 @@ class Pull:
 
     @property
     def changes(self) -> dict[Names, float]:
-        """The new values of the controls that changed, greatest change first."""
+        """Return the new values of the controls that changed, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
         changed = np.flatnonzero(moved > self.ROUND_TOLERANCE)
         order = sorted(changed, key=lambda n: -round(float(moved[n]), 3))
@@ -129,7 +129,7 @@ class Pull:
 
     @property
     def short(self) -> float:
-        """The distance left between the finger's middle and its target, as seen [head units]."""
+        """Remaining distance of the finger's middle from its target, as seen [head units]."""
         there = self._base.positions if self.mends else self._from
         return float(np.linalg.norm(self._left(self.targets, there)))
 
@@ -138,7 +138,7 @@ class Pull:
         return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
     def solve(self) -> None:
-        """Find the answer for these targets; the path of the finger does not matter."""
+        """Solve for these targets; earlier targets have no influence."""
         if not self._look():
             return
         self._base.copy_from(self._home)
@@ -184,7 +184,7 @@ class Pull:
             self._take_values()
 
     def _aim(self) -> None:
-        """Targets of the finger, but no farther than the strongest control reaches."""
+        """Return the targets of the finger, limited to the reach of the strongest control."""
         drawn = self.targets - self._from[self._vertices]
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
@@ -195,15 +195,15 @@ class Pull:
         self._drawn = max(self._off(self._from), 1e-12)
 
     def _near(self, candidates: Sequence[Names]) -> list[Names]:
-        """The candidates that move the finger's skin most within a step."""
+        """Return the candidates that move the finger's skin most within a step."""
         moved = []
         for names in candidates:
             self._probe.copy_from(self._base)
             self._probe.jump(self._towards(names, 1.0))
             self._probe.step(STEP)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
-        most_candidates = 16  # controls that are looked at: those that move the finger's skin most
-        # Two equal controls are both in.
+        most_candidates = 16  # number of examined controls: those that move the finger's skin most
+        # Two equal controls are both included.
         least = 0.99 * sorted([0.0, *moved])[-most_candidates:][0]
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
@@ -216,7 +216,7 @@ class Pull:
         return self._square(self._aims - positions[self._vertices])
 
     def _towards(self, names: Names, share: float) -> dict[str, float]:
-        """Values of controls moved by a share of their range, up or, without room, down."""
+        """Values of controls moved up by a share of their range, or down without room above."""
         low, high = self._base.controls.limits[names[0]]
         value = self._base.controls.values[names[0]]
         step = share * (high - low)
@@ -224,7 +224,7 @@ class Pull:
         return dict.fromkeys(names, moved)
 
     def _measure(self, which: npt.ArrayLike) -> None:
-        """Slopes of the skin in some controls, by their numbers, at the present values."""
+        """Slopes of the skin in controls with the given numbers, at the present values."""
         probe_share = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
             moved = self._towards(self.candidates[n], probe_share)
@@ -234,17 +234,16 @@ class Pull:
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
     def _more(self, needed: Flags) -> Flags:
-        """The needed controls and the one that improves most together with them, by slopes here."""
+        """Return the used controls and the control that improves most together with them."""
         if needed.sum() >= self.MOST_CONTROLS:
             return needed
         system = self._system()
-        # Share of the squared distances: a control that improves less together with others is not
-        # used.
+        # A control is not added if it improves the squared distances by less than this share.
         least_worth = 0.025
         worth = least_worth * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
-        # Share of that: controls whose gains differ by less are used together, such as both sides
+        # Controls whose gains differ by less than this share are used together, such as both sides
         # of a muscle.
         alike_share = 0.2
         alike = needed | (costs <= costs.min() + alike_share * worth)
@@ -254,14 +253,14 @@ class Pull:
         return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:
-        """The linear problem at the present values."""
+        """Return the linear problem at the present values."""
         now = self._base.positions
         count = len(self._value)
         root = np.sqrt(self._share)[:, None]
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
-        # Weight of the rest of the face, against an equal area under the finger.
+        # Weight of the rest of the face, relative to an equal area under the finger.
         rest_weight = 0.02
         others = slope * np.repeat(rest_weight * self._area, 3)
         square_price = 0.034  # the same, as the square of its share: two equal controls share it
@@ -294,15 +293,15 @@ class _Lasso(NamedTuple):
     high: Floats64  # (C,)
 
     def least(self, usable: Flags) -> Floats64:
-        """Move one control after another to its minimum, until none moves any more, (C,).
+        """Move one control after another to its minimum, until none moves any more; return x, (C,).
 
-        usable: all other controls return to their first values, shape (C,).
+        usable: flags of controls, shape (C,); all others return to their first values.
         """
         total = self.changed.copy()
         downhill = self.right.copy()
         downhill += self.gram[:, ~usable] @ total[~usable]
         total[~usable] = 0.0
-        most_sweeps = 60  # through all controls at most
+        most_sweeps = 60  # most sweeps through all controls
         sweep_tolerance = 1e-4  # a change that counts as none, between sweeps
         for _ in range(most_sweeps):
             farthest = 0.0
@@ -320,7 +319,7 @@ class _Lasso(NamedTuple):
         return total - self.changed
 
     def cost(self, usable: Flags) -> float:
-        """The least value of the sum with these controls alone, up to a constant."""
+        """Return the least value of the sum with only these controls, up to a constant."""
         x = self.least(usable)
         spent = self.price @ np.abs(self.changed + x)
         return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

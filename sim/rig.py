@@ -2,7 +2,7 @@
 
 A rig names tissue, jaw, eyes and muscles in terms of the 68 landmarks (see landmarks.py), in
 millimetres of a head whose outer eye corners are 89.2 mm apart; `sim.create` scales it to the
-head at hand. Muscles are written for the subject's left side and mirrored.
+head at hand. Muscles are defined for the subject's left side and mirrored.
 
     format = 1
     [tissue]                 membrane, tissue springs, damping: class Tissue
@@ -14,12 +14,12 @@ head at hand. Muscles are written for the subject's left side and mirrored.
     [[muscle.<name>.fibre]]  one table per fibre of a linear muscle: class Fibre
 
 A point is a table {landmarks = {45 = 0.6, 14 = 0.4}, offset = [-4.5, -17.6, -5.6]}: a mix of
-landmarks (or `landmark = 54`) and an offset lateral, up, forward. Every key has a range; a
-value outside is refused with the muscle, the key and the allowed range.
+landmarks (or `landmark = 54`) and an offset lateral, up, forward. Every key has a range; a value
+outside raises ValueError with the muscle, the key and the allowed range.
 
 Source: Kähler et al. 2001 (fibres, linear muscles and sphincters), 2002 (landmarks carry the
 muscles to another head).
-Differs from it: lids are a kind of their own, turning over the eyeball, where the papers use a
+Differs from it: lids are a separate kind that turns over the eyeball, where the papers use a
 sphincter.
 """
 
@@ -76,7 +76,7 @@ class _PointTable(Record):
     offset: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, 0.0, 0.0)
 
     def point(self) -> LandmarkPoint:
-        """The point of this table; ValueError for none, two, or weights that do not sum to 1."""
+        """Point of this table; ValueError for none, two, or weights that do not sum to 1."""
         if (self.landmark is None) == (self.landmarks is None):
             raise ValueError("give exactly one of 'landmark' and 'landmarks'")
         mix = self.landmarks or ((self.landmark or 0, 1.0),)
@@ -188,13 +188,13 @@ class Muscle(Record):
     halves: Flag = False  # a pair that also has a control for both
     crosses: Flag = False  # a pair whose muscles also reach the other side
     drive: Annotated[float, Within(0.5, 2.0)] = 1.0  # x drive_power of the tissue
-    tone: Flag = True  # holds the skin when relaxed, too
+    tone: Flag = True  # also holds the skin when relaxed
     bone: Annotated[str, OneOf(("cranium", "mandible"))] = "cranium"  # where the origin is fixed
     gate: Annotated[str, OneOf(("none", "upper_lip", "lower_lip"))] = (
         "none"  # which lip it may move
     )
-    opens_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # how far it breaks the lip seal
-    lies_on: tuple[str, ...] = ()  # muscles that carry it
+    opens_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # share by which it breaks the lip seal
+    lies_on: tuple[str, ...] = ()  # muscles beneath, which carry it
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ class LinearMuscle(Muscle):
     beyond: Annotated[float, Within(1.0, 60.0)] = 10.0  # mm past the insertion
     # share of its length lost at full activation
     contraction: Annotated[float, Within(0.0, 0.95)] = 0.3
-    fixed_at: Annotated[float, Within(0.0, 0.5)] = 0.0  # the place that stays: 0 for a bone
+    fixed_at: Annotated[float, Within(0.0, 0.5)] = 0.0  # place that stays fixed: 0 for a bone
     wrap: Annotated[float, Within(0.0, 1.5)] = 0.7  # 0 straight .. 1 bent to follow the skin
     bulge: Annotated[float, Within(0.0, 20.0)] = 0.0  # mm of thickening at full activation
     bulge_at: Annotated[float, Within(0.0, 1.0)] = 0.5  # place of the bulge along the fibre
@@ -274,7 +274,7 @@ def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
 
 
 def _refuse_circle(muscles: Mapping[str, Muscle], way: tuple[str, ...]) -> None:
-    """Go down from the last muscle of `way`, and refuse a return to its first one."""
+    """Go down from the last muscle of `way`; raise ValueError on a return to its first muscle."""
     for name in muscles[way[-1]].lies_on:
         if name == way[0]:
             circle = " on ".join((*way, name))
@@ -300,5 +300,5 @@ class Rig(Record):
 
 
 def read_rig(document: Mapping[str, Any]) -> Rig:
-    """Read a rig from the parsed rig file; ValueError names the wrong muscle and key."""
+    """Read a rig from the parsed rig file; raises ValueError with the wrong muscle and key."""
     return read(Rig, document, "rig")

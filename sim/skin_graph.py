@@ -1,8 +1,7 @@
-"""The edges of a triangle mesh: all that meshes with the same triangles share.
+"""The edges of a triangle mesh, and all else that depends only on its triangles.
 
-Persons have the triangles of the built-in head. What follows from these alone is found once: edges,
-the places of matrices that are not zero, and an order of the vertices in which elimination fills
-few others.
+All persons have the triangles of the built-in head, so these data are computed once: edges, the
+nonzero pattern of matrices, and an elimination order of the vertices with little fill-in.
 
 Source: George, Liu 1989, "The evolution of the minimum degree ordering algorithm".
 """
@@ -65,7 +64,7 @@ class SkinGraph:
 
 
 def graph_of(faces: Integers32, vertex_count: int) -> SkinGraph:
-    """The graph of triangles (F, 3); that of the last few meshes is known."""
+    """Return the graph of triangles (F, 3); graphs of the last few meshes are cached."""
     return _graph_of(faces.tobytes(), vertex_count)
 
 
@@ -78,7 +77,7 @@ def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
     pattern = sparse.csc_array((np.ones(neighbours.nnz), neighbours.indices, neighbours.indptr))
     pattern.resize((vertex_count, vertex_count))
     degrees = np.diff(neighbours.indptr)
-    # Only the order is wanted, which does not depend on values.
+    # Only the order is used, and it does not depend on the values.
     system = (sparse.diags_array(degrees + 1.0) - pattern).tocsc()
     place = sparse_linalg.splu(
         system,

@@ -1,4 +1,4 @@
-"""The skin as the kernels of a substep need it, and the values that hold for one tick.
+"""The skin data for the kernels of a substep, and the values that are constant during a tick.
 
 Source: Kähler et al. 2001, section 3: point masses at the vertices, joined by springs.
 """
@@ -15,7 +15,7 @@ from .tissue import EdgeSprings, TissueSprings
 
 
 class SkinModel(NamedTuple):
-    """Point masses, springs and contacts of one face; a simulation changes none of it."""
+    """Point masses, springs and contacts of one face; a simulation does not change them."""
 
     rest: Floats64  # (V, 3) mm, positions of the undeformed mesh
     mass: Floats64  # (V,)

@@ -1,13 +1,14 @@
 """Bones and eyeballs: their places at rest, and their motion by jaw and gaze values.
 
-Skin is simulated in coordinates of the cranium; the pose of the head moves the result as a whole
+Skin is simulated in coordinates of the cranium. The pose of the head turns the result as a whole
 about the joint with the spine. The mandible turns about the axis through both condyles and glides
-with them; skin hangs on cranium and mandible by a weight. Eyeballs turn in place. These are rigid
-degrees of freedom beside the muscles: no spring moves a bone. bones.py has their present poses.
+with them; skin hangs on cranium and mandible by a weight. Eyeballs turn in place. These rigid
+degrees of freedom are controls beside the muscles: no spring moves a bone. bones.py has the present
+poses.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin). Differs from it: the
 condyles also glide (a real jaw opens by turning and sliding), and the jaw also moves forward and
-sideways; for a move to the side it turns about the condyle of that side.
+sideways; to move to one side, it turns about the condyle of that side.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class RigidMotion(NamedTuple):
 
     @classmethod
     def of(cls, rotation: Floats64, shift: Floats64) -> RigidMotion:
-        """A motion with read-only arrays, because several faces may share it."""
+        """Return a motion with read-only arrays, because several faces may share it."""
         return cls(read_only(rotation), read_only(shift))
 
     @classmethod
@@ -51,7 +52,7 @@ class RigidMotion(NamedTuple):
         return cls.of(rotation, pivot - rotation @ pivot)
 
     def displacements(self, points: Floats64) -> Floats64:
-        """How far points (..., 3) move."""
+        """Return the displacements of points (..., 3)."""
         return points @ self.rotation.T + self.shift - points
 
     def after(self, first: RigidMotion) -> RigidMotion:
@@ -105,7 +106,7 @@ class Skull:
         """Motion of the mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
-        # Share of the way forward: nobody draws the jaw back by more than two millimetres.
+        # Share of the way forward: a human jaw moves back by two millimetres at most.
         backward_share = 0.15
         values = opening, max(forward, backward_share * forward), sideways
         return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
@@ -118,8 +119,8 @@ class Skull:
         return RigidMotion.about(eyeball.centre, yaw @ pitch)
 
 
-# Every tick places mandible and head anew: numpy takes ten times as long as these kernels for so
-# few numbers.
+# Kernels, because every tick places mandible and head, and numpy takes ten times as long for so few
+# numbers.
 
 
 @njit
@@ -263,6 +264,6 @@ def mandible_weight_from_landmarks(
     of_fixed = np.zeros(fixed.sum())
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, of_fixed, of_lips])
-    seed_hold = 3.0  # soft: seeds that were held firmly would give a rough border
+    seed_hold = 3.0  # soft: exactly interpolated seeds would give a rough border
     weight = surface.harmonic(seeds.astype(np.int64), wanted, hold=seed_hold)
     return np.clip(weight, 0.0, 1.0)

@@ -1,8 +1,8 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
-The physics is explained where its data is made: tissue.py, contact.py, teeth.py. The arguments are
-the named tuples of state.py and skin_model.py. All kernels stand here, so that a substep is read
-from top to bottom.
+tissue.py, contact.py and teeth.py explain the physics. The arguments are the named tuples of
+state.py and skin_model.py. All kernels are in this file, so that a substep can be read from top to
+bottom.
 
 A frame is cut into ticks, a tick into substeps:
 
@@ -10,11 +10,11 @@ A frame is cut into ticks, a tick into substeps:
               in its middle, which makes the lag second order
     substep   at most 1/300 s: forces, velocity, position, contact
 
-A frame of any length is divided exactly, so there is no remainder to carry and no jitter at odd
-frame rates. Masses are raised where the longest substep would be unstable (tissue.py), hence every
-length up to it is stable too. Damping is implicit and differs by vertex: it is near critical for
-the springs that hold the vertex, because one constant would leave overshoot where a muscle stiffens
-the skin.
+A frame of any length is divided into equal ticks and substeps, so no remainder is carried, and
+there is no jitter at odd frame rates. Masses are raised where the longest substep would be unstable
+(tissue.py), so all shorter substeps are stable as well. Damping is implicit and differs by vertex:
+it is near critical for the springs that hold the vertex, because a single constant would allow
+overshoot where a muscle stiffens the skin.
 
 Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet;
 step, mass scaling and damping were measured here.
@@ -54,7 +54,7 @@ def substeps_in(tick: float) -> int:
 
 
 def parts(whole: float, longest: float) -> int:
-    """Number of equal parts of a time [s], none longer than `longest`."""
+    """Return the number of equal parts, none longer than `longest`, of a time [s]."""
     return max(1, math.ceil(whole / longest - ROUNDING))
 
 
@@ -62,7 +62,7 @@ def parts(whole: float, longest: float) -> int:
 def advance(state: State, skin: SkinModel, tick: Tick) -> None:
     """Advance a face by one tick in substeps: the list of all forces and constraints."""
     damp(state, skin, tick.h)
-    lip_passes = 7  # averaged projections need several where lips are pressed hard
+    lip_passes = 7  # averaged projections need several passes where lips are pressed hard
     for _ in range(tick.substeps):
         tissue_forces(state, skin.tissue)
         edge_forces(state, skin.edges)
@@ -89,7 +89,7 @@ def damp(state: State, skin: SkinModel, h: float) -> None:
 
 @njit
 def tissue_forces(state: State, springs: TissueSprings) -> None:
-    """Set `state.offset`, and set `state.force` to the pull of bone and of muscles."""
+    """Set `state.offset`, and set `state.force` to the pull of bones and muscles."""
     x = state.x
     carried = state.carried
     normals = state.normals
@@ -120,8 +120,8 @@ def tissue_forces(state: State, springs: TissueSprings) -> None:
 def edge_forces(state: State, springs: EdgeSprings) -> None:
     """Add the pull of all edges to `state.force`; `state.offset` must be up to date.
 
-    There are three passes. The second scatters nothing, so the processor takes several roots and
-    quotients at a time. The third loads each vertex once for all edges that begin there.
+    There are three passes. The second pass writes no shared entries, so roots and quotients are
+    vectorised. The third pass loads each vertex once for all edges that begin there.
     """
     x = state.x
     offset = state.offset
@@ -192,9 +192,9 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
     """Change velocities by the seal's pull over a substep, taken at its end (implicit Euler).
 
     An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w: s' = (s
-    - h k w c) / (1 + h^2 k w), stable for any stiffness k. A vertex in several pairs splits its
-    mass among them (mass splitting, Tonge et al. 2012), so a weak seal pulls with its whole force,
-    however many pairs there are.
+    - h k w c) / (1 + h^2 k w), stable for any stiffness k. The mass of a vertex in several pairs is
+      split among them (mass splitting, Tonge et al. 2012), so a weak seal pulls with its full force
+      for any number of pairs.
     """
     rest = skin.rest
     mass = skin.mass
@@ -237,7 +237,7 @@ def move(state: State, h: float) -> None:
     """Second half: positions from the new velocities."""
     x = state.x
     v = state.v
-    # In mm/s per axis: a face never reaches it, but a vertex that a caller kicks may.
+    # In mm/s per axis: a face never reaches this speed, but a vertex after a caller's `kick` may.
     largest_speed = 5000.0
     for i in range(len(x)):
         for k in range(3):
@@ -255,7 +255,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
     v = state.v
     change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
-    slide_fade = 3.0  # mm over which the lower lip then passes the upper one
+    slide_fade = 3.0  # mm over which contact fades as the lower lip passes the upper lip
     for p in range(len(lips.vertex)):
         i = lips.vertex[p]
         a = lips.beside[p, 0]
@@ -303,7 +303,7 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
     shift = mandible.shift
     arch = teeth.arch
     tooth_fade = 3.0  # mm above and below the teeth over which their contact fades
-    least_share = 0.1  # of an arch: the way out is uncertain nearer to its axis
+    least_share = 0.1  # share of an arch's radius: nearer to the axis the way out is ambiguous
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         width = arch[c, 0]

@@ -48,21 +48,21 @@ class SkinSurface:
 
     @cached_property
     def tree(self) -> scipy.spatial.cKDTree:
-        """Search tree that finds the vertices near a point."""
+        """Search tree for the vertices near a point."""
         return scipy.spatial.cKDTree(self.positions)
 
     def nearest(self, points: Floats64) -> Integers32:
-        """Number of the vertex nearest to each point (n, 3)."""
+        """Return the number of the vertex nearest to each point (n, 3)."""
         return np.asarray(self.tree.query(points)[1], dtype=np.int32)
 
     def distances_from(self, vertices: Integers64) -> Floats64:
-        """Shortest way along edges [mm] from some vertices, shape (V,); inf on other components."""
+        """Shortest path lengths along edges [mm] from some vertices, (V,); inf without a path."""
         graph = self.graph.matrix(self.lengths)
         distance = csgraph.dijkstra(graph, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
     def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
-        """Numbers of the vertices on the shortest way along edges from each vertex to the next.
+        """Return the vertices of shortest paths along edges from each given vertex to the next.
 
         hindrance: a number for each vertex, shape (V,). An edge costs its length times 1 + the mean
         hindrance of its ends.
@@ -71,7 +71,7 @@ class SkinSurface:
         i, j = self.edges.T
         graph = self.graph.matrix(self.lengths * (1.0 + (hindrance[i] + hindrance[j]) / 2.0))
         apart = np.linalg.norm(np.diff(self.positions[stops], axis=0), axis=1)
-        # [mm] that the search goes: further costs time, and is seldom needed.
+        # Reach of the search [mm]: a larger reach takes longer, and is seldom needed.
         near = 5.0 * float(apart.max(initial=0.0))
         for limit in (near, np.inf):
             costs, before = csgraph.dijkstra(
@@ -95,13 +95,13 @@ class SkinSurface:
     def harmonic(
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
     ) -> Floats64:
-        """Smoothest field, shape (V,), that takes `values` at the seed `vertices`."""
+        """Return the smoothest field, shape (V,), with `values` at the seed `vertices`."""
         weight = np.zeros(self.vertex_count)
         right = np.zeros(self.vertex_count)
         seeds = np.asarray(vertices, dtype=np.int64)
         np.add.at(weight, seeds, hold)
         np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))
-        # Pulls components without a seed to zero instead of leaving them undefined.
+        # This term makes components without a seed zero instead of undefined.
         seed_floor = 1e-6
         diagonal = weight + seed_floor * self.areas
         field: Floats64 = self.graph.solver(self.edge_stiffness, diagonal)(right)

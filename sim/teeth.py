@@ -1,9 +1,10 @@
 """Teeth as hard bodies behind lips and cheeks: one elliptic arch on each jaw.
 
 An arch is half an elliptic cylinder that stands on its bone. Its axis goes through the middle of
-the molars. Its half width is theirs, and its depth is the distance of the incisors in front of
-them. Skin inside is moved out, away from the axis. The upper arch stays with the cranium, the lower
-moves with the jaw. Towards the free edges of the teeth the arch fades, so that a lip can slip off.
+the molars. Its half width is half of their distance across, and its depth is the distance from them
+to the incisors. Skin inside is moved out, away from the axis. The upper arch stays with the
+cranium, the lower moves with the jaw. Towards the free edges of the teeth contact fades, so that a
+lip can slip off.
 
 Source: own; contact by projection as in contact.py. Anatomy: dental arches are close to half
 ellipses.
@@ -31,7 +32,7 @@ class Teeth(NamedTuple):
     least: Floats64  # (C,) least distance from the axis, 1 = the arch
 
     def deepest(self, x: Floats64, mandible: RigidMotion) -> float:
-        """Greatest depth of skin at `x` (V, 3) in the teeth, minus that at rest [mm]."""
+        """Greatest depth of skin at `x` (V, 3) in the teeth, minus the depth at rest [mm]."""
         if not len(self.vertex):
             return 0.0
         points = x[self.vertex]

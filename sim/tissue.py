@@ -1,26 +1,26 @@
 """Skin and tissue: the springs from each vertex to the bone and to its neighbours, and its mass.
 
 Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image outside
-the skin, so that skin slides sideways but neither sinks in nor lifts off. If each spring has the
-anchor depth d, the stiffness k and the pre-tension share p, the pair pulls like
+the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor depth d,
+stiffness k and pre-tension share p of each spring, the force of the pair is
 
     force = -A [ kt (I - n n^T) + kn n n^T ] (x - r),      kn = 2 k,  kt = 2 k p
 
-to first order. We use this linearised pair, not the two springs: it has no rest-length
-singularity when skin slides far (a smile moves it by more than the tissue is thick) and costs no
-square root. n turns with the bone.
+to first order. We use this linearised pair instead of the two springs: it has no rest-length
+singularity when skin slides far (a smile moves skin by more than the thickness of tissue), and
+needs no square root. n turns with the bone.
 
 The skin itself is a membrane. Every edge is a spring with the rest length of the undeformed mesh.
 Its stiffness follows from the adjacent triangle areas (Van Gelder), so the membrane does not depend
 on the triangulation; beyond a strain it stiffens (biphasic, as skin does). A second, linear term
-makes neighbours move alike: edge springs alone resist no shear on a valence-4 grid and leave single
-vertices behind.
+makes neighbours move alike, because edge springs do not resist shear on a valence-4 grid, and
+single vertices would lag behind.
 
 Source: Kähler et al. 2001, section 3.2 (edges are springs, counter springs); Van Gelder 1998; Lee,
 Terzopoulos, Waters 1995 for layered tissue and biphasic stiffness. Differs from them: the pair is
 linearised; the far end r is the rest position carried by bones; muscles act as springs of their own
-(muscles.py). The shear term is our own: measured against scans, it gives skin its smooth field of
-motion, and the membrane does not.
+(muscles.py). The shear term is our own: compared with scans, this term makes the motion of skin
+smooth, and the membrane does not.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class TissueSprings(NamedTuple):
         """Uniform tissue under a whole surface, except the nose.
 
         septum: points from the base of the nose to its tip (K, 3) [mm]; none without landmarks.
-        Skin there lies on cartilage that stands on the bone, and rises little with the lip.
+        Skin there lies on cartilage above the bone, and rises little with the lip.
         """
         scale = tissue.stiffness_scale * surface.areas
         firm = np.zeros(surface.vertex_count)
@@ -84,8 +84,8 @@ class EdgeSprings(NamedTuple):
         """Springs along all edges of a surface.
 
         knots: points (K, 3) [mm] around which skin is firm, the mouth corners. Many muscles are
-        knotted together there (the modiolus), and no fold may turn inside out. The knot resists
-        stretch more than turning, or a round mouth has pointed corners.
+        joined there (the modiolus), and folds must not turn inside out. The knot resists stretch
+        more than turning, or a round mouth would have pointed corners.
         """
         stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
         middle = surface.positions[surface.edges].mean(axis=1)
@@ -111,11 +111,11 @@ class EdgeSprings(NamedTuple):
 
 
 def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats64:
-    """Mass of each vertex, shape (V,): its skin's, raised where the step would be unstable.
+    """Return the mass of each vertex, (V,): of its skin, raised where the step would be unstable.
 
     stiffness: bound on each row of the stiffness matrix (Gershgorin), shape (V,). An explicit step
-    h is stable for h^2 K < 4 m; small triangles would force a tiny step on all, so they get
-    heavier.
+    h is stable for h^2 K < 4 m. Small triangles would need a tiny step for the whole mesh, so their
+    vertices get heavier.
     """
     # Share of the square of the largest stable step; the rest is margin for geometry.
     stable_step_share = 0.5

@@ -1,15 +1,15 @@
 """The tongue: a spine in the middle plane that bends, and flesh around it.
 
 The tongue hangs on the mandible, so all coordinates here are those of the mandible at rest. At rest
-the spine is the middle line of the part called "tongue". Two controls bend it:
+the spine is the middle line of the part "tongue". Two controls bend it:
 
     tongue_out   the spine slides along a path over the lower incisors, over the lower lip and down
                  in front of it; the root comes forward, and the tongue gets longer and thinner
     tongue_up    the tip rises towards the palate, right behind the upper incisors
 
-The path lies over the present lower lip, and the room between teeth and lips sets how thick the
-tongue is there. It does not come through a shut mouth. Each vertex keeps its place along the spine
-and turns with it.
+The path lies over the present lower lip, and the gap between teeth and lips limits the tongue's
+thickness there. The tongue does not come out through a closed mouth. Each vertex keeps its place
+along the spine and turns with it.
 
 Source: own; a tongue keeps its volume (Kier, Smith 1985, "Tongues, tentacles and trunks").
 """
@@ -56,7 +56,7 @@ class Tongue:
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
         free_share, thickness = self._passage(lips, upper_edge)
         out *= free_share
-        # Part of tongue_out in which the tip rises from behind the incisors onto the path.
+        # Range of tongue_out in which the tip rises from behind the incisors onto the path.
         rise_share = 0.25
         risen = float(smoothstep(np.array(out / rise_share)))
         path = self._on_path(out, lips, thickness)
@@ -67,7 +67,7 @@ class Tongue:
         highest_rise = 24.0  # mm that the tip rises
         tip_up *= min(1.0, highest_rise / float(np.linalg.norm(tip_up)))
         place = np.linspace(0.0, 1.0, SAMPLES)
-        front_share = 0.75  # of the spine, that rises with the tip
+        front_share = 0.75  # share of the spine that rises with the tip
         falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
         ahead = spine[:, 0] - self.lower_edge[2]  # mm in front of the lower teeth
@@ -81,9 +81,9 @@ class Tongue:
         slender = np.clip(shortening, least_width_share, 1.0)
         turn = _direction(spine) - _direction(self.spine)
         sunk_share = 0.25  # of the way from the rest to its place on the lip
-        # The thin tip hangs lower than the middle of the thick rest.
+        # The thin tip hangs lower than the middle of the thicker part.
         sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
-        # The lower lip is lowest in its middle: the tongue lies in it.
+        # The lower lip is lowest in its middle, where the tongue lies.
         over_lip = smoothstep(ahead / self.PATH_SETBACK)
         sides = lips[3:]
         rise = max(float(sides[:, 1].mean()) - lips[1, 1], 0.0)
@@ -97,7 +97,7 @@ class Tongue:
         off = self.off * here(height) * slender
         off += here(hollow) * beside**2
         off -= here(sunk)
-        # A flat tongue shows the groove in its middle, which ends before the tip.
+        # A flat tongue has a groove in its middle, which ends before the tip.
         groove_depth = 1.6  # mm at most
         groove_width = 2.6  # mm
         groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
@@ -113,12 +113,11 @@ class Tongue:
         ceiling = min(lips[0, 1], upper_edge[1])
         floor = max(lips[1, 1], self.lower_edge[1])
         room = ceiling - floor
-        least_room = 1.0  # mm between teeth and lips: the tongue stays in where there is less
-        # In mm between teeth and lips: with more room the tongue comes out as far as its control
-        # says.
+        least_room = 1.0  # mm between teeth and lips; in a smaller gap the tongue stays inside
+        # In mm between teeth and lips; in a larger gap the control is not limited.
         free_room = 3.5
         free_share = (room - least_room) / (free_room - least_room)
-        filled_share = 0.8  # of the room between teeth and lips: thickness of the tongue there
+        filled_share = 0.8  # thickness of the tongue, relative to the gap between teeth and lips
         most_thickness = 8.5  # mm: its thickness there at most
         thickness = np.clip(filled_share * room, least_room, most_thickness)
         return float(np.clip(free_share, 0.0, 1.0)), float(thickness)
@@ -200,7 +199,7 @@ def _edge(teeth: Floats64, *, up: float) -> Floats64:
 
 
 def _direction(spine: Floats64) -> Floats64:
-    """Angle [rad] of the spine's direction to its tip, above forward, at each of its points."""
+    """Angle [rad] above forward of the spine's direction towards its tip, at each point."""
     forward, up = -np.gradient(spine, axis=0).T
     return np.unwrap(np.arctan2(up, forward))
 
