@@ -63,7 +63,7 @@ class Anatomy:
         self._halves: dict[tuple[float, str], Any] = {}  # halves of parts, by the opened side
 
     def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
-        """Return the chosen structures in their present shape, and the parts that do not hide them.
+        """Return the chosen structures in their present shape, and parts that do not hide them.
 
         Without structures, only hair, glasses and a mask cast shadows. Light passes through
         translucent skin, so all solid parts cast shadows there.

@@ -173,7 +173,7 @@ class Muscles:
         return rails, unit_vectors(normal)
 
     def _carry(self, x: Floats64, normals: Floats64) -> tuple[Floats64, Floats64]:
-        """Return places of the skin over all bands, and unit normals there; skin: x (V, 3)."""
+        """Return places and unit normals over all bands, of a skin with vertices x (V, 3)."""
         found = self._carriers @ np.hstack([x, normals])
         found = found.reshape(*self._rest.shape[:3], 6)
         return found[..., :3], unit_vectors(found[..., 3:])
@@ -239,13 +239,13 @@ class Muscles:
 
 
 class _Skin:
-    """The resting skin, near some places.
+    """The skin at rest, measured near given points.
 
     Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
     """
 
     def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
-        """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
+        """bone: depth of the bone below each vertex of x. middle: outward directions begin here."""
         self.x = x
         self._faces = faces
         self._bone = bone
@@ -254,7 +254,7 @@ class _Skin:
         self._tree = scipy.spatial.cKDTree(x)
 
     def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
-        """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
+        """Return the heights of points (..., 3) above the skin, normals, and depths of the bone."""
         out = (points - self._middle) * (1.0, 0.25, 1.0)
         near, weight = self._near(points, out)
         weight /= weight.sum(axis=-1, keepdims=True)
@@ -266,18 +266,18 @@ class _Skin:
     def _near(
         self, points: Floats64, out: Floats64, count: int = NEAR, reach: float = 0.35
     ) -> tuple[Any, Floats64]:
-        """The `count` vertices nearest to points, and their weights, (..., count)."""
+        """Return the `count` vertices nearest to points, and their weights, (..., count) each."""
         away, near = self._tree.query(points, k=count)
         is_faced = np.einsum("...kc,...c->...k", self.normals[near], out) > 0.0
         scale = reach * np.maximum(away[..., NEAR - 1 : NEAR] ** 2, 1e-30)
         return near, 1e-9 + is_faced * np.exp(-(away**2) / scale)
 
     def carriers(self, points: Floats64, out: Floats64) -> Any:
-        """Weights of vertices that carry points of the skin over bands, a sparse matrix (n, V).
+        """Return weights of vertices that carry the skin over bands, a sparse matrix (n, V).
 
-        points, out: of the edges and the middles, (3, b, ROWS, 3). Where the mouth is closed, both
-        lips have vertices near a point. Only those carry it that are a short way along the skin
-        from the vertex over the middle of its band.
+        points, out: places and outward directions over edges and middles, (3, b, ROWS, 3). Where
+        the mouth is closed, both lips have vertices near a point. A vertex carries a point only if
+        the path along the skin from the band's middle is not much longer than the straight line.
         """
         near, weight = self._near(points, out, 3 * NEAR, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
@@ -299,14 +299,14 @@ class _Skin:
 
 
 def _lip_height(marks: Floats64) -> Floats64:
-    """The height of the red of one lip along the mouth, (ROWS,): none at its corners."""
+    """Return the height of a lip's red along the mouth [mm], (ROWS,); 0 at the corners."""
     upper, lower = _resampled(marks[np.array(LIPS)])
     height: Floats64 = 0.5 * np.linalg.norm(upper - lower, axis=1)
     return height
 
 
 def _before_mouth(line: Floats64, marks: Floats64) -> Floats64 | None:
-    """The part of a line (ROWS, 3) before the mouth; None if that is less than half of it.
+    """Return the part of a line (ROWS, 3) that ends at the mouth; None if it is less than half.
 
     Some of the rig's fibres were fitted to motion, and pull across the lips.
     """
@@ -319,7 +319,7 @@ def _before_mouth(line: Floats64, marks: Floats64) -> Floats64 | None:
 
 
 def _thickness(swollen: Floats64) -> Floats64:
-    """Half the thickness of bands [mm], (b, ROWS), chosen by eye after anatomical plates."""
+    """Return half the thickness of bands [mm], (b, ROWS), chosen by eye after anatomical plates."""
     most_thickness = 2.8
     plump = 0.45 + 0.55 * ARCH**0.8
     thick: Floats64 = 0.5 * most_thickness * plump * swollen**0.65 * END
@@ -327,7 +327,7 @@ def _thickness(swollen: Floats64) -> Floats64:
 
 
 def _resampled(lines: Floats64) -> Floats64:
-    """ROWS points along each polyline (b, n, 3), rounded where it bends."""
+    """Return ROWS points along each polyline (b, n, 3), smoothed where it bends."""
     at = np.linspace(0.0, lines.shape[1] - 1.0, ROWS)
     low = np.minimum(at.astype(int), lines.shape[1] - 2)
     share = (at - low)[:, None]

@@ -151,7 +151,7 @@ def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Fl
 
 
 def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
-    """Add residual targets for the rest of its motion to a piece."""
+    """Return a piece with residual targets, which add the rest of the motion."""
     names = tuple(f"residual {index + 1}" for index in range(len(residual.targets)))
     return replace(
         piece,
@@ -163,7 +163,7 @@ def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
 
 
 def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
-    """Sum changes (K, V, 3) by the weights of a piece in each frame; returns (N, V, 3)."""
+    """Return sums of changes (K, V, 3), weighted by a piece's weights in each frame, (N, V, 3)."""
     return np.asarray(np.tensordot(piece.weights, changes, 1))
 
 

@@ -27,7 +27,7 @@ Places = npt.NDArray[np.void]
 
 
 class RefinedSkin:
-    """A skin as a body of an avatar, which is refined again in each pose."""
+    """A refined skin as a body of an avatar; each pose is refined anew."""
 
     name = "skin"
 

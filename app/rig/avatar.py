@@ -54,7 +54,7 @@ class RigRequest:
     chooses_by_take: bool = False
 
     def has_eye_nodes(self, *, is_gltf: bool) -> bool:
-        """Whether nodes turn the eyeballs; by default they do not in a glTF file, which is kept."""
+        """Whether nodes turn the eyeballs; by default they do, except in a glTF file."""
         return self.eyes == "nodes" if is_gltf else self.eyes != "targets"
 
 

@@ -60,7 +60,7 @@ class Skin:
 
 @dataclass(frozen=True)
 class PartBody:
-    """A part of a scene: an eyeball, teeth, hair.
+    """A part of a scene, such as an eyeball, teeth or hair.
 
     bone: name of the node to which the part belongs: the cranium, or the part's own bone, which
     moves the part as a whole.

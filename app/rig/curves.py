@@ -36,8 +36,8 @@ def shape_curves(
 ) -> Floats64:
     """Return the visible amount of each of ARKit's shapes in N frames, in Apple's order, (N, 52).
 
-    activations, controls: the sums and the set values of controls, (N,) each. Raises UserError for
-    a scene without muscles.
+    activations: sums for controls of the lowest layer, (N,) each. controls: set values of controls,
+    (N,) each. Raises UserError for a scene without muscles.
     """
     curves = as_seen(times, solved(scene, ARKIT_SHAPES, activations, controls))
     still = np.zeros(len(times))

@@ -162,7 +162,7 @@ class _Bag:
             self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
 
     def stretch(self, moved: Floats64, rest: Floats64) -> None:
-        """Stretch the other half between placed vertices; writes into `moved` (V, 3)."""
+        """Write the places of the other half, between placed vertices, into `moved` (V, 3)."""
         if self._solver is not None:
             ways = (moved - rest)[self._others]
             moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)

@@ -176,7 +176,7 @@ class FileMeshWriter:
         ]
 
     def _material(self, number: int) -> int:
-        """Return the number in the glTF file of a material of the file, -1 for none."""
+        """Add a material of the file to the glTF file; return its number there, -1 for none."""
         if number not in self._materials:
             rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.6}
             material: dict[str, Any] = {"name": "skin", "pbrMetallicRoughness": rough}
@@ -225,7 +225,7 @@ class FileMeshWriter:
 def root_matrix(to_millimetres: Similarity) -> Floats64:
     """Return the matrix (4, 4) from coordinates of a file to metres, y up, face along z.
 
-    Axes turn by right angles only. If a usual unit is near the measured unit, it is used.
+    Axes turn by right angles only. A usual unit replaces a measured unit near it.
     """
     rotation = to_millimetres.rotation
     axes = np.zeros((3, 3))

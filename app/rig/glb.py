@@ -84,7 +84,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
-        """Add vectors (V, 3) that are mostly zero; only the other vectors take room."""
+        """Add vectors (V, 3) of which most are zero; only the non-zero vectors take room."""
         count = len(vectors)
         places = np.flatnonzero(vectors.any(axis=1))
         if not len(places):

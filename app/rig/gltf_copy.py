@@ -139,7 +139,7 @@ class GltfShapes:
         names: Sequence[str],
         extras: Mapping[str, Any],
     ) -> None:
-        """Add the shapes to all primitives of a mesh; all must have the same number of shapes."""
+        """Add the shapes to all primitives of a mesh, because glTF requires equal numbers."""
         mesh = self._document["meshes"][number]
         old = max(len(each.get("targets", [])) for each in mesh["primitives"])
         for place, primitive in enumerate(mesh["primitives"]):

@@ -19,7 +19,7 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
 
 def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
-    """Return the mesh's numbers of each piece's vertices; vertices that a cut doubles come last."""
+    """Return each piece's vertices by their numbers in the mesh, with a cut's vertices last."""
     found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)

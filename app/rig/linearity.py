@@ -53,7 +53,7 @@ class Difference:
 
 
 class Sums:
-    """Sums of the shapes of a scene's skin, compared with its simulation.
+    """Adds shapes of a scene's skin, and compares the sums with the simulation.
 
     corrected: pairs whose correctives are included; `poses` has the poses of these pairs.
     """
@@ -91,7 +91,7 @@ class Sums:
         return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), displacement)
 
     def sum(self, weights: Mapping[str, float]) -> Floats64:
-        """Return displacements of the skin's vertices for weights of shapes [mm], shape (V, 3)."""
+        """Return the skin's displacements [mm], shape (V, 3), for weights of shapes."""
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
             total += weight * self._displacements[name]

@@ -62,7 +62,7 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
 
 
 def _has_plain_lines(content: bytes, file: FileHead) -> bool:
-    """Whether an OBJ's lines can stay: no line continues in the next, and none is in UTF-16."""
+    """Whether an OBJ's lines can stay: no line continues in the next, and no text is UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
     return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
 

@@ -68,8 +68,8 @@ class RefinedSurface(MovingSurface):
 
     rest_normals: normals at rest, shape (V, 3). normals: normals in each frame, shape (N, V, 3).
     sources: the triangle of the scene's mesh that contains each triangle, shape (F,).
-    origins: where each vertex lies on the scene's mesh. refiner: refines the scene's mesh into
-    these triangles.
+    origins: where each vertex lies on the scene's mesh. refiner: makes these triangles from the
+    scene's mesh.
     """
 
     rest_normals: Floats32 = field(kw_only=True)

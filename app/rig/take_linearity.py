@@ -74,7 +74,7 @@ def worth_correcting_on(
     """Return at most `count` pairs of ARKit's shapes whose correctives fit a take best.
 
     Only pairs that the take plays together on the same skin are simulated. Pairs are chosen one
-    after another: each time the pair that most reduces the squared error, while any reduces it.
+    after another: each next pair reduces the squared error most. The choice ends if none does.
     """
     weights = dict(zip(ARKIT, take.curves.T, strict=True))
     sums = Sums(scene, {name: poses[name] for name in ARKIT})

@@ -69,7 +69,7 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
 
 
 def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
-    """Return a copy of a glTF file with the shapes, and, on request, with built-in parts."""
+    """Return a copy of a glTF file with the shapes, and with built-in parts if requested."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
     cut = file.head.lip_cut

@@ -73,7 +73,7 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """Build the scene called `name`; raises UserError for a head in a scene without heads."""
+    """Build the scene called `name`; raises UserError if it has no head, but `head` is given."""
     if head is None:
         return SCENES[name]()
     if name != "face":
@@ -103,5 +103,5 @@ def called_head(who: int | str) -> FittedHead:
 
 
 def head_in_words(who: int | str) -> str:
-    """Describe a result of `called_head` in a list."""
+    """Describe the head with a number or a name, for lists."""
     return "Coarse head" if who == COARSE else person_in_words(who)

@@ -68,7 +68,7 @@ class DenseSkin:
 def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:
     """Return sums of unit normals around vertices, shape (V, 3).
 
-    A scan has folds of single triangles, where the normal of one vertex points into the face.
+    In a scan, single triangles can be folded, and the normal of one vertex then points inward.
     """
     normals = vertex_normals(vertices, faces)
     corners = faces.ravel()

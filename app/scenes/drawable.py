@@ -65,7 +65,7 @@ class Drawable:
 
     name: name of the scene, by which looks choose options.
     faces: (F, 3). rest_positions: (V, 3) [mm].
-    called: name of the head, if it is one. face: the simulated face, if there is one.
+    called: name of the head, or "". face: the simulated face, or None.
     """
 
     called = ""

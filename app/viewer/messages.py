@@ -26,7 +26,7 @@ class Messages:
     seconds_left: float = 0.0
 
     def say(self, text: str, *, error: bool = False, stays: bool = False) -> None:
-        """Show a line instead of the one before; an error stays."""
+        """Show a line in place of the last line; an error stays."""
         self.text = sentence(as_text(text))
         self.is_error = error
         self.stays = error or stays

@@ -84,7 +84,7 @@ class Exporter:
 
     @property
     def head(self) -> FittedHead | None:
-        """The head of the session; None for the built-in one, and without a head."""
+        """The user's or a person's head in the session; None for the built-in head or no head."""
         face = self.session.scene.face
         return face.head if face is not None and isinstance(face.head, FittedHead) else None
 
@@ -98,7 +98,7 @@ class Exporter:
         ask(suffixes=(".glb",), proposed=f"{as_text(name)}-avatar.glb")
 
     def start_avatar(self, target: Path) -> Message:
-        """Begin to write the head with named shapes, and with parts that its file lacks.
+        """Begin to write an avatar: the head with named shapes, and with parts that its file lacks.
 
         UserError if the file cannot be written.
         """
@@ -114,7 +114,7 @@ class Exporter:
         return None
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
-        """Return options of `capture` for the window's picture; a comparison is side by side."""
+        """Return options of `capture` for the window's picture; draw a comparison side by side."""
         choices = self.choices
         view = self._view
         display = self._view.display
@@ -262,7 +262,7 @@ class ExportDialog:
             self._gui.remember(f"export: {label}")
 
     def _draw_end(self, choices: ExportChoices) -> None:
-        """Draw the size of the output, and the buttons; the first one asks for a name."""
+        """Draw the length of the output, and the buttons; the export button asks for a name."""
         exporter = self._exporter
         duration = self._exporter.session.script.duration
         imgui.separator()

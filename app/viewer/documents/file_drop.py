@@ -96,7 +96,7 @@ class FileDrop:
         self._begin(f"Making {'the built-in head' if who is None else head_in_words(who)}", make)
 
     def _begin(self, action: str, make: Callable[[], Task]) -> None:
-        """Make the task that shows a head, in a thread; an earlier thread's result is dropped."""
+        """Start a thread that makes the task to show a head; drop an earlier thread's result."""
         self._action = action
         self._begun = time.monotonic()
         self._shown_seconds = -1
@@ -122,7 +122,7 @@ class FileDrop:
         return f"{self._action} ... {self._shown_seconds} s"
 
     def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
-        """Make the task that shows a head or opens its marking, and opens the other files."""
+        """Return a task that shows a head or opens its marking, and then opens the other files."""
         show = None
         remark = ""
         complaint = ""

@@ -87,7 +87,7 @@ class Manual:
 
 
 def _options() -> rich_md.MarkdownOptions:
-    """Return options of the text; a second font has missing characters, such as arrows."""
+    """Return options of the text, with a second font for arrows and other missing characters."""
     rich_md.set_assets_folder(str(Path(imgui_bundle.__file__).parent / "assets"))
     options = rich_md.MarkdownOptions()
     options.font_options.merge_fonts = ["fonts/Inconsolata-Medium.ttf"]
@@ -97,7 +97,7 @@ def _options() -> rich_md.MarkdownOptions:
 def pages() -> dict[str, str]:
     """Return the texts of the pages by their names in docs/, in reading order.
 
-    UserError if they are neither in a checkout nor installed.
+    UserError if the pages are neither in a checkout nor installed.
     """
     folder = _folder()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.glob("**/*.md"))]
@@ -110,7 +110,7 @@ def pages() -> dict[str, str]:
 
 
 def _folder() -> Path:
-    """The folder of the pages: docs/ of a checkout, else the installer's folder."""
+    """Return the folder of the pages: docs/ in a checkout, otherwise the installed folder."""
     checkout = Path(risorius.__file__).resolve().parents[1] / "docs"
     if (checkout / FIRST_PAGE).is_file():
         return checkout

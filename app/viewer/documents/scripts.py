@@ -138,7 +138,7 @@ class ScriptCommands:
         script.check(self._session.controls.limits)
 
     def save(self, then: Task = lambda: None) -> Message:
-        """Write the script to its own file, or ask for one."""
+        """Write the script to its own file; ask for a file if there is none."""
         file = self._session.file
         if file.path is not None and not file.objection:
             return self._write(file.path, then)

@@ -254,7 +254,7 @@ class Gui:
         return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)
 
     def remember(self, name: str) -> None:
-        """Store the place of the last drawn item."""
+        """Store the place of the last drawn item under a name."""
         low = imgui.get_item_rect_min()
         high = imgui.get_item_rect_max()
         self.places[name] = (low.x, low.y, high.x, high.y)
@@ -313,7 +313,7 @@ def em(count: float = 1.0) -> float:
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
-    """Return a colour as a vector of imgui."""
+    """Return a colour in imgui's vector type."""
     return imgui.ImVec4(*rgb, opacity)
 
 

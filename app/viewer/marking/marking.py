@@ -80,7 +80,7 @@ class Marks:
     guessed: frozenset[int] = frozenset()
 
     def placed(self, number: int, place: npt.ArrayLike) -> Marks:
-        """Return these marks with one more that is placed by hand."""
+        """Return these marks with one more mark, placed by hand."""
         x, y, z = np.asarray(place, np.float64).tolist()
         return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
 
@@ -205,11 +205,11 @@ class Marking:
         return "All points are guessed; drag those that are not where they belong"
 
     def go(self, step: int) -> None:
-        """Go to the next landmark in the order of marking, or with -1 to the one before."""
+        """Go to the next landmark in the order of marking, or with -1 to the previous landmark."""
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
     def undo(self, changes: int = 1) -> None:
-        """Undo this many changes, including turns of the mesh; -1 redoes one."""
+        """Undo this many changes, including turns of the mesh; -1 redoes one change."""
         self.marks, placing = self.history.go(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)
@@ -224,7 +224,7 @@ class Marking:
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
-        """Continue with the marks of a file; raises UserError if it has no marks for this mesh."""
+        """Continue with the marks of a file; raises UserError for marks of another mesh."""
         with _for_users():
             places, guessed = read_marks(path, self.mesh)
         marks = Marks({})

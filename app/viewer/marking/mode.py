@@ -22,7 +22,7 @@ from .picture import MarkingMouse, MarkingView
 
 
 class MarkingMode:
-    """The marking of a mesh in the window; see `Mode` of the window."""
+    """The mode of the window in which a mesh is marked; see `Mode`."""
 
     draws_over_picture = True  # the panel draws marks there
     is_at_rest = True
@@ -125,7 +125,7 @@ class MarkingMode:
         self.marking.turn(quarter_turn if np.array_equal(turn, np.eye(3)) else turn)
 
     def _commands(self) -> tuple[Command, ...]:
-        """The commands of this mode alone."""
+        """Return the commands that only this mode has."""
         marking = self.marking
         view = self.view
         file = partial(Command, "File")

@@ -108,7 +108,7 @@ class MarkingPanel:
         imgui.spacing()
 
     def _draw_guide(self) -> None:
-        """Draw the current point in a diagram of all points; at last, of its group alone."""
+        """Draw a diagram of all points, or of one group at the end, with the current point."""
         current = self._marking.current
         is_complete = self._marking.marks.is_complete
         low = imgui.get_cursor_screen_pos()
@@ -136,7 +136,7 @@ class MarkingPanel:
 def _draw_points(
     pen: imgui.ImDrawList, at: Mapping[int, Spot], current: int, *, joined: bool
 ) -> None:
-    """Draw points with a dark border, the lines of groups, and a ring around one point."""
+    """Draw points with a dark border, the lines of groups, and a ring around the current point."""
     for group in GROUPS if joined else ():
         for a, b in (pair for line in group.lines for pair in pairwise(line)):
             if a in at and b in at:

@@ -109,7 +109,7 @@ class MarkingMouse(CameraMouse):
         self.forget()
 
     def _put(self, io: Any) -> bool:
-        """Place the current mark under the mouse; return whether visible skin is there."""
+        """Place the current mark under the mouse; return False without visible skin there."""
         marking = self._marking
         before = self._marking.marks
         point = self._skin_under(io)

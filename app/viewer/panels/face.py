@@ -34,8 +34,8 @@ from ..timeline.keys import KeySelection, listed, movers_of
 class Row:
     """One row: the shared name of its controls, and the controls with bars.
 
-    names: the controls with bars: first for both sides, then for the subject's right, then left.
-    sides: two controls that can be linked, or (); with is_linked, the bar of the left moves both.
+    names: the controls with bars, in the order: both sides, subject's right side, left side.
+    sides: two controls that can be linked, or (); with is_linked, the left bar moves both.
     """
 
     label: str
@@ -262,7 +262,7 @@ class FacePanel:
         self._flash = 90  # number of frames that highlight the row
 
     def draw(self) -> None:
-        """Draw everything, inside the window's panel."""
+        """Draw the panel's content inside its window."""
         self._draw_buttons()
         imgui.begin_child("controls")
         has_command = self._draw_commands()

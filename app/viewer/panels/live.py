@@ -41,7 +41,7 @@ class LivePanel:
         self._rows = LabelledRows(app.gui, share=0.38, hints=HINTS)
 
     def draw(self) -> None:
-        """Draw everything, inside the window's panel."""
+        """Draw the panel's content inside its window."""
         gui = self._gui
         live = self._live
         messages = self._messages
@@ -102,7 +102,7 @@ class LivePanel:
         face.calibration = replace(before, mirror=mirror, default_gain=gain)
 
     def _draw_channels(self, face: LiveFace) -> None:
-        """Draw bars of the received channels after calibration; angles are numbers."""
+        """Draw bars of the received channels after calibration; angles are drawn as numbers."""
         taken = face.calibration.apply(face.channels)
         for name, value in sorted(taken.items()):
             self._rows.begin(name)

@@ -63,7 +63,7 @@ class MechanismPanel:
         return self._settings.display
 
     def draw(self) -> None:
-        """Draw everything, inside the window's panel."""
+        """Draw the panel's content inside its window."""
         imgui.begin_child("mechanism")
         self._draw_reset()
         for title, draw in (
@@ -134,7 +134,7 @@ class MechanismPanel:
             self._rows.switch("Skin maps")
 
     def _options(self) -> dict[str, refine.Option]:
-        """The options of the refiner and its criterion; none if it cannot be loaded."""
+        """Return the options of the refiner and its criterion; none if they cannot be loaded."""
         scene = self._stage.scene
         display = self._display
         criterion = display.refinement_on(scene).criterion_on(scene.name)
@@ -243,7 +243,7 @@ def choices_of(option: str) -> tuple[str, ...]:
 def _keep_in_order(
     stored: dict[str, Any], name: str, value: float, defaults: Mapping[str, Any]
 ) -> None:
-    """Keep the threshold for two splits at or above the first by moving the unset threshold."""
+    """Keep the second split's threshold at or above the first's, by moving the unset one."""
     start = name.removesuffix("once").removesuffix("twice")
     first = f"{start}once"
     second = f"{start}twice"

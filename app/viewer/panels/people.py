@@ -16,7 +16,7 @@ from .display_rows import DisplayRows
 
 
 class PeopleList:
-    """A button with the present person, which opens the list."""
+    """The list of persons, and the button that opens it."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop, rows: DisplayRows) -> None:
         """rows: the panel's rows, among them the button."""
@@ -64,7 +64,7 @@ class PeopleList:
             self._messages.carry_out(partial(self._file_drop.show_person, shown))
 
     def _fill(self, who: int | str) -> None:
-        """Draw picture and words of a person over the last item."""
+        """Draw a person's picture and description over the last item."""
         low = imgui.get_item_rect_min()
         high = imgui.get_item_rect_max()
         side = high.y - low.y

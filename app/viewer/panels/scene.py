@@ -35,7 +35,7 @@ class ScenePanel:
         self._people = PeopleList(app, file_drop, self._rows)
 
     def draw(self) -> None:
-        """Draw everything, inside the window's panel; for a plane only its rows."""
+        """Draw the panel's content inside its window; for a plane, only the rows that apply."""
         imgui.begin_child("scene")
         rows = self._rows
         scene = self._stage.scene

@@ -123,7 +123,7 @@ class CameraMouse:
 
 
 class Mouse(CameraMouse):
-    """The mouse on a face: it drags the skin, and the line between two halves."""
+    """The mouse on a face: it drags the skin, and the line of a comparison."""
 
     skin_drag: SkinDrag | None = None
 

@@ -53,7 +53,7 @@ class Ray:
 def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats64 | None:
     """Return the nearest point where the ray meets the mesh from outside, or None.
 
-    Only triangles whose bounding rectangle across the ray contains it are tested.
+    Only triangles are tested whose bounding rectangle across the ray contains the ray.
     """
     axes = np.linalg.svd(ray.direction[None])[2][1:]  # two directions across the ray
     # Rounding errors must not let a ray pass between the two triangles of an edge.
@@ -131,7 +131,7 @@ class SkinDrag:
         return muscle_at(self._simulation, self.point)
 
     def let_go(self) -> Message:
-        """End the drag: muscles hold the skin, or it swings back; return a message about them."""
+        """End the drag: muscles hold the skin, or it swings back; return a message."""
         self.drop()
         if self._pull is None:
             return None

@@ -148,7 +148,7 @@ class Stage:
         self.bind(display)
 
     def bind(self, display: Display) -> None:
-        """Bind the refiners of `display`; UserError if one refuses its options."""
+        """Bind the refiners of `display`; UserError if a refiner refuses its options."""
         tone = TONES[display.tone]
         if tone != self._tone:
             self.pipeline.set_tone(tone)
@@ -337,7 +337,7 @@ class LevelOfDetail:
         self.level = max(self.level - 1, 0)
 
     def _forget(self) -> None:
-        """Forget the frames of another level or motion."""
+        """Forget the times of earlier frames, which had another level or motion."""
         self._slow = []
         self._fast = 0
 

@@ -1,1 +1,1 @@
-"""A user's work on a face, the face's motion in time, and files of both; knows no window."""
+"""A user's work on a face, the face's motion, and the files of the work; independent of windows."""

@@ -105,7 +105,7 @@ class ScriptFile:
         return cls(path if is_own else None, script)
 
     def differs(self, script: Script) -> bool:
-        """Whether saving would change the file."""
+        """Whether the script differs from the saved script."""
         return script is not self._saved and script != self._saved
 
     @property

@@ -123,5 +123,5 @@ class LiveCommands:
         return self.face is not None and self.face.state is State.RECEIVING
 
     def due_in(self) -> float:
-        """Return the time [s] until the face counts as lost, for which the window may sleep."""
+        """Return how long the window may sleep [s], until the face counts as lost."""
         return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")

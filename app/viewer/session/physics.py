@@ -55,7 +55,7 @@ class FrameTimes:
 
     @contextmanager
     def timed(self, phase: str) -> Iterator[None]:
-        """Add the block's time to the present frame's time of a phase."""
+        """Measure the block, and add its time to a phase of the present frame."""
         if self._is_over:
             for column in (*self.milliseconds.values(), self.whole):
                 column.append(0.0)
@@ -66,7 +66,7 @@ class FrameTimes:
         self.milliseconds[phase][-1] += 1e3 * (time.perf_counter() - start)
 
     def next_frame(self, elapsed: float) -> None:
-        """Begin the next frame, `elapsed` seconds after the last; skip frames without work."""
+        """Begin the next frame, `elapsed` seconds after the last; idle frames are not counted."""
         if not self._is_over:
             self.whole[-1] = 1e3 * elapsed
         self._is_over = True
@@ -142,7 +142,7 @@ class Physics:
         is_urgent: bool = False,
         life: Life | None = None,
     ) -> None:
-        """Take the due steps; none for a resting face that neither a user nor idle life moves.
+        """Take the due steps; take none if the face rests, and neither user nor idle life moves it.
 
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. Raises UserError if the simulation failed.

@@ -136,7 +136,7 @@ def _has_pose(session: Session) -> bool:
 
 
 def _state(session: Session) -> object:
-    """Return a value to compare fast; two values differ if the unsaved work differs."""
+    """Return a value that differs if the unsaved work differs, and that is compared fast."""
     return (
         session.script if session.work.script_is_unsaved else None,
         session.values if _has_pose(session) else None,

@@ -104,7 +104,7 @@ class Session:
 
     @property
     def differing(self) -> frozenset[str]:
-        """The controls that were moved by hand away from the script; this reads every track."""
+        """The controls whose values by hand differ from the script; computed from every track."""
         if self.is_following or self.is_recording:
             return frozenset()
         return frozenset(self._away(self.values))
@@ -208,7 +208,7 @@ class Session:
         return f"{controls} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
-        """Pause at the next time with a key, or with -1 at the previous one."""
+        """Go to the next time with a key, or with -1 to the previous time, and pause."""
         line = self.seek(keyframes.time_beyond(self.script, self.time, direction))
         self.is_playing = False
         return line
@@ -289,7 +289,7 @@ class Session:
         return self.recorder is not None
 
     def toggle_recording(self) -> Message:
-        """Begin to record moved controls while the script plays from the present time, or end this.
+        """Begin to record moved controls while the script plays on, or end the recording.
 
         Nothing is recorded while the script is paused or repeats a part.
         """
@@ -384,7 +384,7 @@ class Work:
 
     @property
     def name(self) -> str:
-        """The script's name: that of its file, if it has one, else its title."""
+        """The script's name: the name of its file, or without a file its title."""
         path = self._session.file.path
         return as_text(path.name if path else self._session.script.title or "Untitled")
 

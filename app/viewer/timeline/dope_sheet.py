@@ -279,7 +279,7 @@ class DopeSheet:
             self._begin("end" if is_at_end else "scrub", io)
 
     def _turn_wheel(self, io: Any) -> None:
-        """Zoom about the mouse; Shift, or a sideways wheel: scroll; middle button: pan."""
+        """Zoom about the mouse, scroll by Shift or a sideways wheel, pan by the middle button."""
         if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)

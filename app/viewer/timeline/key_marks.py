@@ -149,7 +149,7 @@ class TrackPainter:
         return is_dense
 
     def _draw_names(self, track: Track, top: float) -> None:
-        """Draw the names of poses above them, each up to the next one."""
+        """Draw the names of poses above their keys; a name ends at the next name."""
         axis = self._axis
         ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]

@@ -44,7 +44,7 @@ class Timeline:
         self._rows = 1  # rows of buttons: a narrow window has a second one
 
     def height(self) -> float:
-        """The height of the timeline [window units]; it scrolls if words are too large."""
+        """Return the height of the timeline [window units]; rows scroll if letters are large."""
         display = imgui.get_io().display_size.y
         most = 0.4 * display
         buttons = self._rows * imgui.get_frame_height_with_spacing()

@@ -96,7 +96,7 @@ def file_menu(
 
 
 def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
-    """Return the commands that export a face for other programs, a submenu of File."""
+    """Return the submenu of File that exports a face for other programs."""
     return (
         Command(
             "File",
@@ -202,7 +202,7 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
     setting = partial(switch_of, lambda: settings, "View")
 
     def toggle_look() -> Message:
-        """Switch between the paper's rule and the first look, both without changes."""
+        """Switch between the paper's rule and the first look, and drop changes of either."""
         display = settings.display
         display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
@@ -257,7 +257,7 @@ def live_menu(live: LiveCommands, session: Session) -> Menu:
 
 
 def help_menu(manual: Manual, commands: Callable[[], Menu]) -> Menu:
-    """Return commands for manual, version and citation. commands: all of the window."""
+    """Return commands for manual, version and citation. commands: all commands of the window."""
     command = partial(Command, "Help")
     return (
         command("Manual", "F1", manual.read),

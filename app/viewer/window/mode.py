@@ -28,11 +28,11 @@ class Mode(Protocol):
 
     @property
     def painter(self) -> Painter:
-        """The painter, which keeps the picture up to date."""
+        """The object that keeps the picture up to date."""
 
     @property
     def mouse(self) -> CameraMouse:
-        """The mouse in the picture, with its actions."""
+        """The object that carries out the mouse's actions in the picture."""
 
     @property
     def commands(self) -> Sequence[Command]:

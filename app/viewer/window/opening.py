@@ -55,7 +55,7 @@ def without_refused_options(display: Display, scene: Scene) -> str:
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
-    """Return the scene at rest, after a run of the code that its first frames need compiled."""
+    """Return the scene at rest, after its first frames ran once to compile their code."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     scene.step(1.0 / 60.0)
@@ -66,7 +66,7 @@ def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> S
 
 
 def _refine_once(scene: Scene, display: Display) -> None:
-    """Refine the present scene; raises UserError for a refiner that refuses it, or fails."""
+    """Refine the present scene; raises UserError if the refiner refuses it, or fails."""
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
     with reported(plug_ins_of(*refinement.on(scene.name))):

@@ -25,7 +25,7 @@ class Schedule:
         mode: Callable[[], Mode],
         due_in: Callable[[], float],
     ) -> None:
-        """mode: returns the present mode. due_in: returns the time to the next recovery [s]."""
+        """mode: returns the present mode. due_in: returns the time to the next saving [s]."""
         self._context = context
         self._file_drop = file_drop
         self._mode = mode
@@ -48,7 +48,7 @@ class Schedule:
         return self._begun - last
 
     def end_frame(self) -> None:
-        """Count down the frames to draw."""
+        """Note that a frame is drawn, and count down the frames still to draw."""
         self._awake = max(self._awake - 1, 0)
 
     @property
@@ -100,7 +100,7 @@ class Schedule:
             gui.read_events(PACKET_WAIT)
 
     def sleep(self) -> None:
-        """Sleep until an event comes, or for a while; the clock stops meanwhile."""
+        """Sleep until an event comes, or for a short time; this time does not count as elapsed."""
         context = self._context
         is_watching = (
             context.files.is_waiting

@@ -242,7 +242,7 @@ class Viewer:
     # Changes of the window as a whole
 
     def show_scene(self, scene: Scene) -> None:
-        """Replace the scene by another one with the same controls."""
+        """Replace the scene by another scene with the same controls."""
         if self.marking_mode is not None and self.marking_mode.unsaved:
             raise UserError("landmarks were moved meanwhile; press [Use this head] again")
         self.session.move_to(scene)
