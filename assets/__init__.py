@@ -1,11 +1,11 @@
-"""Built-in things to simulate and draw: the head and the paper's plane.
+"""Built-in assets to simulate and draw: the head and the paper's plane.
 
     head = assets.load("head")
     plane = assets.load("plane")
     mesh = assets.read_mesh("sheet.ply")  # or OBJ, STL, OFF, GLB, glTF
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
-The built-in head ships as data; docs/head.md names the data of its fit.
+The built-in head ships as data files; docs/head.md names the data to which it was fitted.
 """
 
 from .errors import AssetError

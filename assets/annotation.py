@@ -2,8 +2,8 @@
 
 The rig has its own 68 landmarks, at places that muscles need (`Head.landmarks`). Landmarks of a
 picture lie on visible borders: on the edges of the lids and of the red of the lips, and on the
-painted brow. A jaw has no such border; its points lie on the outline of the face, which for every
-camera is another line on the skin.
+painted brow. A jaw has no such border: its points lie on the outline of the face, which is a
+different line on the skin for every camera.
 
 Sources: Sagonas et al. 2016, "300 Faces In-The-Wild Challenge: database and results" (the scheme);
 Zhu et al. 2015, "High-fidelity pose and expression normalization for face recognition in the wild"
@@ -32,7 +32,7 @@ from .loading import load
 from .model import Head, Segment
 
 FIRST_INNER = 17  # the number of the first landmark that is not of the jaw
-LANES = 25  # ways over the skin on which a side's outline is sought, from the eye to the chin
+LANES = 25  # paths over the skin on which a side's outline is searched, from eye to chin
 STEPS = 25  # places along each of them
 
 
@@ -40,9 +40,9 @@ STEPS = 25  # places along each of them
 class Annotation:
     """Places on the skin of one head; see the module.
 
-    inner: those of the points 17 to 67, in their order.
-    lanes: those of the ways on which the outline is sought: LANES ways of STEPS places on the right
-        side, then as many on the left. Each way runs from the cheek outward.
+    inner: places of the points 17 to 67, in their order. lanes: places along the paths on which the
+    outline is searched: LANES paths of STEPS places on the right side, then as many on the left.
+    Each path runs from the cheek outward.
     """
 
     inner: SurfacePoints
@@ -53,18 +53,18 @@ class Annotation:
         make_read_only(self.lanes)
 
     def inner_points(self, positions: Floats64) -> Floats64:
-        """The points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
+        """Return the points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
         return self.inner.interpolate(positions)
 
     def ways(self, positions: Floats64) -> Floats64:
-        """The ways of the outline on a skin with vertices (V, 3), shape (2, LANES, STEPS, 3)."""
+        """Paths of the outline on a skin with vertices (V, 3), shape (2, LANES, STEPS, 3)."""
         return self.lanes.interpolate(positions).reshape(2, LANES, STEPS, 3)
 
 
 def annotation_of(head: Head | FittedHead) -> Annotation:
-    """The annotation of a head at rest.
+    """Return the annotation of a head at rest.
 
-    A user's head has the points of its landmark file, because these are annotations.
+    For a user's head these are the points of its landmark file, because they are annotations.
     """
     if isinstance(head, Head | Person):
         points, lanes = _of_built_in()
@@ -80,7 +80,7 @@ def annotation_of(head: Head | FittedHead) -> Annotation:
 
 @lru_cache(maxsize=1)
 def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
-    """The places of points and lanes on the triangles that all persons share."""
+    """Return the places of points and lanes on the triangles that all persons share."""
     table = read_toml(Path(__file__).with_name("annotation.toml"))
     known = load("head")
     uv = known.uv[known.landmarks[FIRST_INNER:]].astype(np.float64)
@@ -102,7 +102,7 @@ def _mirror_image(uv: Floats64) -> Floats64:
 
 
 def _evenly(corners: Floats64, count: int) -> Floats64:
-    """Points from corner to corner, equally many between each pair, shape (count, k)."""
+    """Points along a polyline, equally many between each pair of corners, shape (count, k)."""
     return evenly_spaced(corners, np.arange(float(len(corners))), count)
 
 
@@ -113,7 +113,7 @@ def places_on_texture(uv: Floats64) -> SurfacePoints:
 
 @lru_cache(maxsize=1)
 def _texture() -> MeshSearch:
-    """The built-in head's skin, laid flat as its texture is."""
+    """Return the built-in head's skin, flattened by its texture coordinates."""
     known = load("head")
     level = np.zeros((len(known.uv), 1))
     return MeshSearch.of(np.hstack([known.uv.astype(np.float64), level]), known.faces)
@@ -128,7 +128,7 @@ def _vertices(numbers: Integers32) -> SurfacePoints:
 
 
 def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
-    """Places, with those of the brows moved to the brows of a head's own picture."""
+    """Return the places, with brow points moved to the brows in the head's own picture."""
     corners = points.corners.copy()
     weights = points.weights.copy()
     sides = ((Segment.RIGHT_BROW, -1.0, range(21, 16, -1)), (Segment.LEFT_BROW, 1.0, range(22, 27)))
@@ -149,8 +149,8 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
 def _along_brow(places: Floats64) -> Integers32:
     """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
 
-    They are both ends, and three on the upper edge at equal distances. The tail ends at the place
-    farthest from the inner end, because a tail may turn down there.
+    They are both ends, and three places on the upper edge at equal distances. The tail ends at the
+    place farthest from the inner end, because a tail may turn down there.
     """
     x, y, _ = places.T
     strip_width = 1.0  # [mm]

@@ -1,4 +1,4 @@
-"""The built-in head with a quarter of its triangles, where everybody sees the effect of refinement.
+"""The built-in head with a quarter of its triangles, on which refinement is clearly visible.
 
     head = coarse_head()
 
@@ -27,7 +27,7 @@ LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
 
 @dataclass(frozen=True)
 class CoarseHead(FittedHead):
-    """A head with some vertices of the built-in one. Besides the fields of a fitted head it has:
+    """A head with some vertices of the built-in head. Besides the fields of a fitted head it has:
 
     mandible_weight, jaw_axis, mirror: as in `Head`.
     anatomy: the anatomical points among its vertices, name -> vertex number.
@@ -39,7 +39,7 @@ class CoarseHead(FittedHead):
     mirror: Integers32
 
     def fade(self) -> None:
-        """A shirt covers the edge of its neck."""
+        """No fading: a shirt covers the edge of the neck."""
 
 
 def coarse_head() -> CoarseHead:
@@ -51,7 +51,7 @@ def coarse_head() -> CoarseHead:
     kept, faces = _layout(known)
     number = np.full(len(known.vertices), -1, np.int32)
     number[kept] = np.arange(len(kept))
-    # No lashes hang from its lids, and no map shows form beyond its triangles.
+    # Its lids have no lashes, and no map shows form finer than its triangles.
     parts = tuple(_behind_lids(known, part) for part in known.parts if part.roots is None)
     still = replace(known.wrinkles, across=np.zeros((len(kept), 2, 3), np.float32))
     return CoarseHead(
@@ -80,7 +80,7 @@ def coarse_head() -> CoarseHead:
 
 
 def _behind_lids(known: Head, part: Part) -> Part:
-    """The part, but an eyeball a little smaller: straight edges of lids would cut a full one."""
+    """Part; an eyeball is made a little smaller, so that straight lid edges do not cut it."""
     share = 0.95  # of the radius
     for eye in known.eyes:
         if part.name == f"eyeball_{eye.name}":
@@ -90,7 +90,7 @@ def _behind_lids(known: Head, part: Part) -> Part:
 
 
 def _layout(known: Head) -> tuple[Integers32, Integers32]:
-    """The kept vertices of the built-in head, (V,), and triangles among them, (F, 3)."""
+    """Return the kept vertices of the built-in head, (V,), and triangles between them, (F, 3)."""
     table = read_toml(LAYOUT_FILE)["triangles"]
     left = np.vstack([*table.values()]).astype(np.int32)
     right = known.mirror[left][:, ::-1]

@@ -1,4 +1,4 @@
-"""The files of an asset: arrays, tables and images, read whole or refused in one line.
+"""Readers for the files of an asset: arrays, tables and images; errors are one line each.
 
 Images are PNG files that hold sRGB, row 0 on top.
 """
@@ -44,7 +44,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 def read_image(path: Path, *, mode: str = "RGB") -> Image:
     """Read an image, shape (H, W, 3), in mode "L" (H, W), uint8, read-only; or AssetError."""
-    import PIL.Image  # imported late: to load a head stays fast
+    import PIL.Image  # imported late, so that loading a head is fast
 
     with _errors_named(path), PIL.Image.open(path) as file:
         image: Image = np.array(file.convert(mode), dtype=np.uint8)

@@ -1,11 +1,11 @@
-"""The surface that a glTF or GLB file shows: its triangles at rest, and their paint.
+"""Reads the surface in a glTF or GLB file: triangles at rest, and their paint.
 
-Nodes place meshes, bones bend them, and shapes are added with the file's weights. The result is one
-list of triangles in the coordinates of the scene, node by node and part by part.
+Nodes place meshes, bones deform them, and morph targets are added with the file's weights. The
+result is one list of triangles in the coordinates of the scene, node by node and part by part.
 
-A vertex at a seam of the texture occurs twice in the file. Vertices of one node in one place are
-merged, unless a shape or a bone of the file moves them apart: then they belong to two lips that
-touch.
+A vertex at a seam of the texture occurs twice in the file. Vertices of one node at the same place
+are merged, unless a morph target or a bone of the file moves them apart: such vertices belong, for
+example, to two lips that touch.
 
 Source: Khronos Group, "glTF 2.0 Specification", section 3.
 """
@@ -28,13 +28,12 @@ from .topology import strip_triangles, unique_points
 
 @dataclass(frozen=True)
 class GltfSurface:
-    """The surface that a glTF file shows.
+    """The surface in a glTF file.
 
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
-    same: for each vertex, the one of its doubles that `faces` name, shape (V,).
-    corners: the same triangles with the numbers of the file, shape (F, 3).
-    texture: pictures and their places; None without pictures.
-    colours: those of vertices, sRGB, shape (V, 3), uint8; None without any.
+    same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the same
+    triangles with the vertex numbers of the file, shape (F, 3). texture: pictures and their places;
+    None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8; None without any.
     has_colour: flags of vertices with a colour, shape (V,).
     """
 
@@ -49,12 +48,12 @@ class GltfSurface:
 
 @dataclass(frozen=True)
 class StoredPiece:
-    """One primitive of a mesh, as one node shows it: the places of its vertices in the file.
+    """One primitive of a mesh in one node: the places of its vertices in the file.
 
-    node, mesh, primitive: their numbers; that of the primitive is within its mesh. count: number of
-    its vertices, which follow those of the pieces before. to_scene: takes a change of stored places
-    to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners in the
-    file's direction, numbers within the piece, shape (F, 3). name: that of the node, or of its
+    node, mesh, primitive: their numbers; primitives are numbered within a mesh. count: number of
+    vertices, which follow the vertices of earlier pieces. to_scene: maps displacements of stored
+    places to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners in
+    the file's direction, numbers within the piece, shape (F, 3). name: name of the node, or of its
     mesh.
     """
 
@@ -85,7 +84,7 @@ class _Piece(NamedTuple):
 
 
 def read_gltf(content: bytes, folder: Path) -> GltfSurface:
-    """The surface in a file. folder: the file's own, which may hold further files of it.
+    """Read the surface in a file. folder: the folder of the file, with further files that it names.
 
     Raises AssetError for an unreadable kind, any other error for a broken file.
     """
@@ -128,7 +127,7 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
 
 
 def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
-    """Pieces of a file with the vertices of `read_gltf`, in its order; errors as there."""
+    """Return the pieces of a file, in the vertex order of `read_gltf`; raises the same errors."""
     reader = _Reader(GltfFile(content, folder))
     return [
         StoredPiece(
@@ -145,7 +144,7 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
 
 
 class _Reader:
-    """Reads pieces; the painter has their pictures."""
+    """Reads pieces; the painter collects their pictures."""
 
     STRIP = 5
     FAN = 6
@@ -175,7 +174,7 @@ class _Reader:
                     yield self._piece(number, place, weights)
 
     def name_of(self, number: int) -> str:
-        """The name of a node that shows a mesh, or of this mesh; empty if neither has a name."""
+        """Return the name of a node with a mesh, or of this mesh; empty if neither has a name."""
         node = self._document.nodes[number]
         return str(node.name or self._document.meshes[node.mesh].name or "")
 
@@ -196,7 +195,7 @@ class _Reader:
         return [*found]
 
     def _piece(self, number: int, which: int, weights: list[float]) -> _Piece:
-        """A node's primitive, by its number in the mesh. weights: those of its shapes."""
+        """Return a node's primitive, by its number in the mesh. weights: of its morph targets."""
         primitive = self._document.meshes[self._document.nodes[number].mesh].primitives[which]
         attributes = vars(primitive.attributes)
         accessor = self._document.accessors[attributes["POSITION"]]
@@ -325,7 +324,7 @@ def _places(nodes: list[Any]) -> list[Floats64]:
 
 def _local(node: Any) -> Floats64:
     """The matrix of a node to its parent, (4, 4)."""
-    from scipy.spatial.transform import Rotation  # which to load a head takes no time for
+    from scipy.spatial.transform import Rotation  # imported late, so that loading a head is fast
 
     if node.matrix:
         return np.array(node.matrix, np.float64).reshape(4, 4).T
@@ -338,7 +337,7 @@ def _local(node: Any) -> Floats64:
 
 
 def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integers64]:
-    """For each vertex, node by node, the first of the vertices that are one with it."""
+    """Return, for each vertex, node by node, the first of the vertices merged with it."""
     for node in dict.fromkeys(piece.node for piece in pieces):
         own = [piece for piece in pieces if piece.node == node]
         start = starts[next(n for n, piece in enumerate(pieces) if piece.node == node)]
@@ -348,14 +347,14 @@ def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integer
 
 
 def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:
-    """For each vertex, the first of those in its place that move alike, shape (V,)."""
+    """Return, for each vertex, the first vertex at its place that moves alike, shape (V,)."""
     same = np.arange(len(stored))
     left = np.arange(len(stored))
-    # Share of the farthest motion of any vertex: more apart, two vertices differ.
+    # Two vertices move alike up to this share of the farthest motion of any vertex.
     least_distance = 1e-3
     most_in_one_place = 16  # different motions of vertices; further ones stay apart
     for _ in range(most_in_one_place):
-        first, number = unique_points(stored[left] + 0.0)  # no zero with a sign
+        first, number = unique_points(stored[left] + 0.0)  # turns -0.0 into 0.0
         same[left] = left[first[number]]
         left = left[abs(motion[left] - motion[same[left]]).max(axis=1) > least_distance]
         if not len(left):

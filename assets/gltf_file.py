@@ -1,8 +1,8 @@
-"""A glTF file taken apart: its document, the numbers of its accessors, the files of its pictures.
+"""Access to a glTF file: its document, the numbers of accessors, the files of pictures.
 
-pygltflib reads the document. The data lie in the GLB file itself, in text within the document, or
-in files beside it. Numbers come out as the specification means them: Normalized integers become
-shares, sparse rows are filled in, and rows may be interleaved.
+pygltflib reads the document. The data are in the GLB file itself, in text within the document, or
+in files beside it. Numbers are returned decoded: normalized integers become shares, sparse rows are
+filled in, and interleaved rows are separated.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 and 4, and its registry of extensions.
 Differs from it: an accessor of matrices holds only matrices of 4 x 4 floats.
@@ -39,9 +39,9 @@ class GltfFile:
     def __init__(self, content: bytes, folder: Path) -> None:
         """content: that of the file. folder: the file's own, which may hold further files of it.
 
-        Raises AssetError, which names the extensions, for required ones without support.
+        Raises AssetError with the names of required extensions that are not supported.
         """
-        import pygltflib  # which to load the built-in head takes no time for
+        import pygltflib  # imported late, so that loading the built-in head is fast
 
         text, self._data = chunks_of(content)
         with warnings.catch_warnings():
@@ -152,8 +152,8 @@ class GltfFile:
 def content_of(uri: str, folder: Path, kind: str) -> bytes:
     """The data of a URI, or of the file that it names.
 
-    folder: that of the document. kind: that of the data, for messages. Raises AssetError for an
-    unreadable file.
+    folder: the folder of the document. kind: kind of the data, for messages. Raises AssetError for
+    an unreadable file.
     """
     if uri.startswith("data:"):
         head, _, data = uri.partition(",")
@@ -180,7 +180,7 @@ def shares(rows: npt.NDArray[Any]) -> Floats64:
 
 
 def packed(name: str) -> AssetError:
-    """The error about a mesh that an extension compresses."""
+    """Return the error for a mesh that an extension compresses."""
     return AssetError(f"is compressed ({name}); export it without compression")
 
 

@@ -24,7 +24,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 
 class GltfPainter:
-    """Finds the paint of a primitive. `pictures` has all so far, by image and tint, unread."""
+    """Finds the paint of primitives. `pictures` collects unread pictures by image and tint."""
 
     UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 

@@ -86,7 +86,7 @@ def read_words() -> Mapping[str, Any]:
 
 
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
-    """Read parts, which are one after another in shared arrays: npz entries are expensive."""
+    """Read parts from shared arrays, in which they follow each other: npz entries are slow."""
     of_vertex, of_face = (np.cumsum(arrays[f"part_{of}_counts"])[:-1] for of in ("vertex", "face"))
     names = "vertices", "normals", "colours", "roots", "mandible_shares"
     vertices, normals, colours, roots, shares = (

@@ -39,13 +39,11 @@ class Mesh:
 
     vertices: positions [unit of the file], shape (V, 3), float64.
     faces: vertex numbers, shape (F, 3), int32.
-    texture: the file's own pictures; None without any.
-    colours: those of its vertices, sRGB, shape (V, 3), uint8; None without any.
-    has_colour: flags of vertices with a colour, shape (V,); None: all.
-    same: for each vertex, the one of its doubles that `faces` name, shape (V,).
-    corners: the vertices of triangles by the file's numbers, shape (F, 3), if some are doubled;
-        None: those of `faces`.
-    notes: what its bringer should know, a line each.
+    texture: the file's own pictures; None without any. colours: vertex colours, sRGB, shape (V, 3),
+    uint8; None without any. has_colour: flags of vertices with a colour, shape (V,); None: all.
+    same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the
+    triangles with the vertex numbers of the file, shape (F, 3), if some vertices are doubled; None:
+    equal to `faces`. notes: remarks for the user, a line each.
     """
 
     vertices: Floats64
@@ -61,7 +59,7 @@ class Mesh:
         make_read_only(self)
 
     def without(self, triangles: npt.NDArray[np.integer[Any]]) -> Self:
-        """The mesh without the flagged triangles; its vertices keep their numbers."""
+        """Return the mesh without the flagged triangles; vertices keep their numbers."""
         left = np.delete(np.arange(len(self.faces)), triangles)
         texture = self.texture
         if texture is not None:
@@ -95,7 +93,7 @@ def read_mesh(path: str | Path) -> Mesh:
 
 
 def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
-    """The mesh in a file of a format. folder: the one that may hold further files of it."""
+    """Read the mesh in a file of a format. folder: the folder with further files that it names."""
     if suffix == "obj":
         surface = read_obj(content, most=MOST_VERTICES)
         texture, notes = texture_of(surface, folder)
@@ -130,11 +128,11 @@ def _numbers(faces: npt.NDArray[Any]) -> Integers32:
 
 @contextlib.contextmanager
 def _broken_files_named() -> Iterator[None]:
-    """Raise every error of a reader as an AssetError: each reader has its own kinds."""
+    """Raise every error of a reader as an AssetError, because readers raise different kinds."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            # numpy warns so about a broken number, and would stop reading there
+            # numpy gives this warning at a broken number, and stops reading there
             warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
             yield
     except AssetError:

@@ -1,8 +1,8 @@
 """The arrays that an asset consists of.
 
-Plain frozen dataclasses of plain numpy arrays: every other package takes arrays, so none of them
-has to import this one. All arrays are read-only. Data that a simulation does not need (images,
-finer meshes) are read from files at their first use.
+Frozen dataclasses of numpy arrays. Other packages take arrays, so they need not import this
+package. All arrays are read-only. Data that a simulation does not need (images, finer meshes) are
+read from files at their first use.
 
 Coordinates of the head: millimetres, x toward the subject's left, y up, z toward the viewer; x = 0
 is the mirror plane. Faces are counter-clockwise seen from outside.
@@ -32,7 +32,7 @@ MASK = "mask"  # likewise
 
 
 class Segment(IntEnum):
-    """Segments of a face that pixels show, by the numbers of FaceSynthetics (Wood et al. 2021).
+    """Segments of a face in a picture, with the numbers of FaceSynthetics (Wood et al. 2021).
 
     Left and right are the subject's.
     """
@@ -78,7 +78,7 @@ class Eye:
 
 @dataclass(frozen=True)
 class Part:
-    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, a shirt.
+    """A rigid object that is drawn but not simulated: an eyeball, a row of teeth, a shirt.
 
     name: unique within the head.
     vertices: rest positions [mm], shape (n, 3), float32.
@@ -88,13 +88,13 @@ class Part:
     bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. Parts of the
         "neck" stand still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
-    roots: for a part that moves with the skin, the root of each vertex: the part's vertex whose
-        place on the skin it follows, shape (n,), int32; None for other parts.
-    strand_radius: half the thickness of its hairs [mm]; 0 for a part without hairs.
-    mandible_shares: for a part of the skull that stretches between both jaws, how far each vertex
+    roots: for a part that moves with the skin, the number of each vertex's root: the vertex of the
+    part whose place on the skin it follows, shape (n,), int32; None for other parts. strand_radius:
+    half the thickness of its hairs [mm]; 0 for a part without hairs. mandible_shares: for a part of
+    the skull that stretches between both jaws, how far each vertex
         follows the mandible, 0 to 1, shape (n,), float32; None for other parts.
-    striation: for hair, the place of each vertex across and along its strands [mm], the way from
-        their roots to their tips [mm], and their density, shape (n, 6), float32; None for other
+    striation: for hair, the place of each vertex across and along its strands [mm], the vector from
+    root to tip [mm], and the density, shape (n, 6), float32; None for other
         parts.
     """
 
@@ -115,7 +115,7 @@ class Part:
 
     @property
     def is_enclosed(self) -> bool:
-        """Whether it is in the head, where no light from behind arrives."""
+        """Whether the part is inside the head, where no light from behind arrives."""
         if self.name in (GLASSES, MASK):
             return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
@@ -139,18 +139,18 @@ class Layer:
 
 @dataclass(frozen=True)
 class Wrinkles:
-    """Wrinkles of a face: furrows over its texture, and the conditions under which they show.
+    """Wrinkles of a face: a map of furrows, and the conditions under which they show.
 
     map: row 0 is v = 1, shape (H, W, 4), uint8. Slope of the skin's height along u and v (128 is
-        level), depth of the furrow, and the slot that the texel follows (0 the first, 255 the
-        second, between them both).
+        level), depth of the furrow, and the slot whose amount the texel follows (0 the first, 255
+        the second, a mixture in between).
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot, the direction at rest in which wrinkling skin shortens; its
         length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
     resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
         all.
-    folds: the share of `resting` that is anatomy, as folds of lids, and shows in a face that is
-        drawn without wrinkles, too; shape (V,); (1,) for all.
+    folds: the share of `resting` that is anatomy, such as folds of lids, and also shows in a face
+    that is drawn without wrinkles; shape (V,); (1,) for all.
     """
 
     map: Image
@@ -189,7 +189,7 @@ class FineMesh:
     edges: tuple[Integers32, ...]
 
     def interpolate(self, values: Floats64 | Floats32) -> Floats64:
-        """Carry values of the head's vertices (depth, weight, motion) to the fine ones.
+        """Interpolate values of the head's vertices (depth, weight, motion) at the fine vertices.
 
         values: shape (V,) or (V, k). Returns shape (n,) or (n, k).
         """
@@ -249,7 +249,7 @@ class Head:
 
     @property
     def expressions(self) -> Mapping[str, Mapping[str, float]]:
-        """The shares of each expression without texts: a pose of action units and muscles."""
+        """The shares of each expression, without its texts: a pose of action units and muscles."""
         rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
         return {
             name: {key: float(value) for key, value in row.items() if key not in Layer.NOT_SHARES}
@@ -257,7 +257,7 @@ class Head:
         }
 
     def beside(self, ending: str) -> Path:
-        """A file beside the head's own, by the ending of its name."""
+        """Return the path of a file beside the head's data file, by the ending of its name."""
         return self.file.with_name(self.file.stem + ending)
 
     @cached_property
@@ -295,7 +295,7 @@ class Head:
         return FineShape(slopes, float(arrays["steepest"]))
 
     def finer(self, level: int) -> FineMesh:
-        """The same form with 4 (level 1) or 16 (level 2) triangles for each; arrays are read-only.
+        """Skin with 4 (level 1) or 16 (level 2) triangles for each; arrays are read-only.
 
         Every call reads the file. Raises ValueError for another level.
         """

@@ -18,7 +18,7 @@ class Sample:
     deviation: float
 
     def score(self, value: float) -> float:
-        """Deviations of a value from the mean."""
+        """Return the distance of a value from the mean, in standard deviations."""
         return (value - self.mean) / self.deviation
 
 
@@ -40,7 +40,7 @@ NORMS = {
 
 
 def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, float]:
-    """All `DISTANCES` between vertices (V, 3), code -> [mm].
+    """Return all `DISTANCES` between vertices (V, 3), code -> [mm].
 
     A measure of one side is the mean of both.
     """

@@ -1,4 +1,4 @@
-"""A mesh file with everything visible, for a writer of another kind of file.
+"""A mesh file with its whole appearance, for conversion to another format.
 
 `read_mesh` omits data that a simulation does not need: the file's normals, texture coordinates
 without a picture, materials, the bytes of pictures.
@@ -35,7 +35,7 @@ class Material:
 
 @dataclass(frozen=True)
 class PaintedMesh:
-    """A mesh file with everything visible.
+    """A mesh file with its whole appearance.
 
     mesh: the result of `read_mesh`; V vertices in the file's order, F triangles.
     uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).

@@ -1,4 +1,4 @@
-"""The pictures of a mesh file: their files, and limits.
+"""Reads the pictures of a mesh file, within safe limits.
 
 A file of unknown origin may name any path, and a picture of a few bytes may decompress to
 gigabytes. So only pictures in the mesh's own folder are opened, only up to a useful size, and only
@@ -45,9 +45,9 @@ class Texture:
 
 
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
-    """The texture that material libraries beside an OBJ file give it; None without a picture.
+    """Return the texture of an OBJ file from its material libraries; None without a picture.
 
-    It also returns a line for each missing library; many files lack theirs.
+    It also returns a note for each missing library, because many files lack them.
     """
     by_material: dict[str, MaterialPicture] = {}
     missing = []
@@ -128,7 +128,7 @@ def decoded(content: bytes, name: str) -> Image:
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(content), formats=("PNG", "JPEG", "WEBP")) as picture:
                 return _shrunk(picture)
-    except Exception as error:  # every format of Pillow raises its own kinds
+    except Exception as error:  # the formats of Pillow raise different kinds of errors
         reason = " ".join(str(error).split())[:200]
         raise AssetError(
             f"its picture {named(name)}: is broken, too large, or neither PNG, JPEG nor WebP "

@@ -1,10 +1,10 @@
 """Skin colour from its pigments: melanin and blood absorb light.
 
-Densities add up, and light falls exponentially with them. So one description of a face - places
-with more blood, tanned places - gives every complexion, and no tone is a tinted copy of another.
-The three spectra are rounded to the red, green and blue of a screen. Source: the idea of Tsumura et
-al. 2003, "Image-based skin color and texture analysis/synthesis by extracting hemoglobin and
-melanin information in the skin"; numbers chosen by eye.
+Densities add up, and light falls exponentially with their sum. So one description of a face (places
+with more blood, tanned places) is enough for every complexion, and no tone is a tinted copy of
+another. The three spectra are rounded to the red, green and blue of a screen. Source: the idea of
+Tsumura et al. 2003, "Image-based skin color and texture analysis/synthesis by extracting hemoglobin
+and melanin information in the skin"; numbers chosen by eye.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Complexion:
     hair: tuple[float, float, float]
 
 
-OWN = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # that of the shipped picture
+OWN = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # the complexion of the shipped picture
 COMPLEXIONS = (  # from light to dark
     Complexion(0.17, 1.05, (0.33, 0.235, 0.165)),
     OWN,
@@ -57,7 +57,7 @@ def paleness_of_lips(pale: float, density: Floats64) -> Floats64:
 
     Blood shows where melanin is missing, so such lips are pinker, not the colour of lighter skin.
     """
-    most_lacking = 0.65  # of that share: all of it looked like paint
+    most_lacking = 0.65  # factor on that share: the full share looked like paint
     redness = 0.45  # of blood in lips, for each unit of density that they lack
     lacking = pale * np.maximum(density, 0.0)
     return np.asarray(redness * lacking.mean() * BLOOD - most_lacking * lacking)

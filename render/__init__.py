@@ -1,6 +1,6 @@
 """Drawing: surfaces (offscreen frame or window), camera, dynamic buffers, shading.
 
-The package takes arrays, and knows nothing of their origin. OpenGL 3.3 core and GLSL 330 suffice.
+The package takes arrays from any source. It needs OpenGL 3.3 core and GLSL 330.
 
     with render.open_offscreen((1280, 720)) as surface:
         renderer = render.Renderer(surface)

@@ -1,4 +1,4 @@
-"""The background behind a scene: a soft gradient, or the map of light that lights the scene."""
+"""The background of a scene: a soft gradient, or the light map that also lights the scene."""
 
 from collections.abc import Sequence
 
@@ -17,11 +17,11 @@ _Area = tuple[Rectangle, Rectangle, float]
 
 
 class Backdrop:
-    """Paints backgrounds into the frame of a surface's target: once, then as a copy per frame.
+    """Paints backgrounds into the frame of a surface's target; later frames copy them.
 
-    On software OpenGL a copy of the whole frame costs a fiftieth of painting it (measured: 0.16 ms
-    against 8 ms at 1280 x 720), and a tenth of a copy of a part, which the driver cannot copy as
-    one block.
+    On software OpenGL, copying the whole frame takes a fiftieth of the time of painting it
+    (measured: 0.16 ms against 8 ms at 1280 x 720). It takes a tenth of the time of copying a part,
+    because the driver cannot copy a part as one block.
     """
 
     def __init__(self, gl: moderngl.Context) -> None:
@@ -38,7 +38,7 @@ class Backdrop:
         views: Sequence[PlacedView],
         backgrounds: Sequence[Background | MapBackground | None],
     ) -> None:
-        """Paint a background behind each view, in a frame that is still empty.
+        """Paint a background behind each view; the frame must be empty.
 
         None: the background is transparent.
         """
@@ -79,7 +79,7 @@ class Backdrop:
 
 
 class _MapPainter:
-    """Paints maps of light; the texture of the last one is kept."""
+    """Paints light maps; the texture of the last map is kept."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
@@ -90,7 +90,7 @@ class _MapPainter:
         self._texture: moderngl.Texture | None = None
 
     def paint(self, background: MapBackground, lens: float, width_for_height: float) -> None:
-        """Paint the present viewport. lens: its field of view from top to bottom [deg]."""
+        """Paint the current viewport. lens: its field of view from top to bottom [deg]."""
         if self._texture is None or self._painted is not background:
             self._texture = self._uploaded(background)
             self._painted = background

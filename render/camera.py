@@ -1,6 +1,6 @@
-"""The camera, which turns about a point of the scene like a portrait photographer.
+"""The orbit camera, which turns about a point of the scene.
 
-A `CameraView` is one camera that looks into a viewport; a `PlacedView` has its pixels and matrices.
+A `CameraView` is a camera with a viewport; a `PlacedView` has its pixels and matrices.
 
 World: x to the subject's left (the viewer's right), y up, z toward the viewer of the front view.
 Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes have the order
@@ -20,7 +20,7 @@ from ..geometry.arrays import Floats64
 from .render_target import Rectangle, intersection, scaled
 
 FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
-MARGIN = 0.06  # of the frame, free on each side after framing; mouths open and brows rise
+MARGIN = 0.06  # share of the frame free on each side after framing: mouths open, brows rise
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
 _STEEPEST = 89.0  # [degrees] of the steepest view; beyond 90 "up" would tip over
 
@@ -44,9 +44,9 @@ class OrbitCamera:
     distance: from the target to the eye.
     yaw, pitch: place of the eye on the sphere [degrees]; 0, 0 = in front.
     field_of_view: top to bottom [degrees].
-    narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
-        width, but more of its height; framing sets it.
-    scene_centre, scene_radius: a sphere that holds the framed scene; sets the clipping planes.
+    narrowest_aspect: a frame narrower than this (width / height) shows the same width of the scene,
+    and more of its height; `framing` sets it. scene_centre, scene_radius: a sphere that holds the
+    framed scene; sets the clipping planes.
     """
 
     target: Floats64
@@ -93,11 +93,11 @@ class OrbitCamera:
         return camera
 
     def copy(self) -> "OrbitCamera":
-        """Return an independent camera that sees the same."""
+        """Return an independent copy of this camera."""
         return replace(self, target=self.target.copy(), scene_centre=self.scene_centre.copy())
 
     def orbit(self, yaw: float, pitch: float = 0.0) -> None:
-        """Move round the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
+        """Move around the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
         self.yaw = math.remainder(self.yaw + yaw, 360.0)
         self.pitch = min(max(self.pitch + pitch, -_STEEPEST), _STEEPEST)
 
@@ -149,7 +149,7 @@ class OrbitCamera:
         return Matrix44(matrix)
 
     def projection_matrix(self, aspect: float) -> Matrix44:
-        """Camera -> clip space, for a frame of that width / height."""
+        """Camera -> clip space, for a frame of this aspect, width / height."""
         near, far = self._depth_range()
         degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
@@ -176,7 +176,7 @@ class OrbitCamera:
         """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
-        for _ in range(8):  # each round centres better; perspective makes one round inexact
+        for _ in range(8):  # repeated, because perspective makes one round inexact
             x, y, z = axes @ (points - self.target).T
             self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
             depth = self.distance - z
@@ -195,10 +195,9 @@ class OrbitCamera:
 class CameraView:
     """A camera's state at the time of this object's creation, and the viewport that it looks into.
 
-    viewport: x, y, width, height [pixels of the surface] from the lower left corner, whose aspect
-        the picture takes on; None: all of the surface.
-    clip: the only part of the surface that is drawn; None: all of the viewport. Two
-        clips make one image of two meshes.
+    viewport: x, y, width, height [pixels of the surface] from the lower left corner; the picture
+    has its aspect; None: all of the surface. clip: the part of the surface that is drawn; None: all
+    of the viewport. With two clips, one image shows two meshes.
     """
 
     camera: OrbitCamera
@@ -210,14 +209,14 @@ class CameraView:
 
 
 class PlacedView:
-    """The pixels and the matrices of a view on one target, for row vectors, computed once.
+    """Pixels and matrices, for row vectors, of a view on one target.
 
     viewport, clip: of the target [pixels].
     world_to_view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
     """
 
     def __init__(self, view: CameraView, size: tuple[int, int], scale: float = 1.0) -> None:
-        """size: that of the target [pixels]. scale: its pixels per pixel of the surface.
+        """size: size of the target [pixels]. scale: pixels of the target per pixel of the surface.
 
         Raises ValueError for a viewport without pixels.
         """
@@ -238,10 +237,10 @@ class PlacedView:
         return self.world_to_view @ self.projection
 
     def covered_pixels(self, corners: Floats64, padding: float = 2.0) -> Rectangle:
-        """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
+        """Return the pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 
-        It is the whole clip if a corner is not finite or lies behind the eye; width or height are 0
-        if the hull is not visible.
+        This is the whole clip if a corner is not finite or lies behind the eye; width or height are
+        0 if the hull is not visible.
         """
         matrix = self.world_to_clip
         with np.errstate(over="ignore", invalid="ignore"):
@@ -257,7 +256,7 @@ class PlacedView:
 
     @cached_property
     def depth_range(self) -> tuple[float, float]:
-        """First depth of the scene on the target, 0..1, and 1 / the extent of its depths."""
+        """First depth of the scene on the target, 0..1, and 1 / the range of its depths."""
         camera = self.camera
         middle = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
         reach = 1.3 * camera.scene_radius  # a face moves beyond its rest pose
@@ -270,9 +269,10 @@ class PlacedView:
 
     @cached_property
     def depth_tolerance(self) -> tuple[float, float]:
-        """How far depths on one surface may be apart, of the depth range: at 0, and its slope.
+        """Return the largest depth difference on one surface, as a linear function of depth.
 
-        That is a part of the width of a pixel there.
+        It returns the value at depth 0 and the slope, relative to the depth range: a part of a
+        pixel's width at this depth.
         """
         share = 0.7 / self.camera.focal(self.viewport[2] / self.viewport[3], self.viewport[3])
         least, scale = self.depth_range
@@ -281,9 +281,9 @@ class PlacedView:
 
 
 def box_corners(points: npt.NDArray[Any]) -> Floats64:
-    """The corners of the box that holds all points (n, 3), shape (8, 3), float64."""
+    """Return the corners of the bounding box of points (n, 3), shape (8, 3), float64."""
     low = points.min(axis=0).astype(np.float64)
     high = points.max(axis=0).astype(np.float64)
-    with np.errstate(over="ignore", invalid="ignore"):  # an unstable simulation is drawn, too
+    with np.errstate(over="ignore", invalid="ignore"):  # an unstable simulation is also drawn
         corners: Floats64 = low + _CORNERS * (high - low)
     return corners

@@ -1,8 +1,8 @@
 """The picture of a scene in a window, under its panels.
 
-Software OpenGL pays for every sample, so a moving scene may be drawn with fewer (`Detail`). Then
-edges.py smooths its edges, and this module enlarges it. The scene's own pixels stay: when only a
-panel changes, they are copied under it again, not drawn again.
+Software OpenGL takes time for every sample, so a moving scene may be drawn with fewer samples and
+pixels (`Detail`). Then edges.py smooths its edges, and this module enlarges it. The pixels of the
+scene are kept: when only a panel changes, they are copied instead of drawn again.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _UNIT = 4  # texture unit while enlarging
 
 @dataclass(frozen=True)
 class Detail:
-    """Fineness of a window's scene.
+    """Resolution of a window's scene.
 
     samples: per pixel, 0 = none. scale: pixels of the scene per pixel of the window, 0..1.
     """
@@ -84,7 +84,7 @@ class Compositor:
         return None if area is None else scaled(area, scene.size[0] / self.size[0])
 
     def lay(self, x: int, y: int, image: Any) -> None:
-        """Draw a label on the bound framebuffer; see `WindowSurface.labels`."""
+        """Draw a label into the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
         gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)

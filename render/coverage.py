@@ -1,4 +1,4 @@
-"""Coverage: the surface that each sample of a pixel sees, from drawings without light."""
+"""Coverage: the surface seen by each sample of a pixel, drawn without lighting."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -17,7 +17,7 @@ SKIN_NUMBERS = 190.0, 63.0, 254.0
 
 
 class Drawn(NamedTuple):
-    """The surfaces of a frame that were drawn in a view.
+    """The surfaces of a frame that have been drawn in a view.
 
     skin: None if it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
     each triangle of the skin is a surface of its own.
@@ -32,7 +32,7 @@ class Drawn(NamedTuple):
 
 
 class Coverage:
-    """Several samples of each pixel of a target: numbers and depths."""
+    """Surface numbers and depths of several samples per pixel of a target."""
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self._gl = gl
@@ -79,7 +79,7 @@ class Coverage:
         placed.buffers.draw(program)
 
     def _program(self, view: PlacedView, numbers: Numbers, *defines: str) -> moderngl.Program:
-        """The program for a kind of surfaces, ready for one with these numbers."""
+        """Return the program for a kind of surfaces, with the uniforms of these numbers set."""
         if defines not in self._programs:
             self._programs[defines] = compile_program(self._gl, "coverage.glsl", *defines)
         program = self._programs[defines]
@@ -89,12 +89,12 @@ class Coverage:
 
 
 def part_numbers(placed: PlacedBuffers) -> Numbers:
-    """The numbers of a part."""
+    """Return the surface numbers of a part."""
     return placed.number, 0.0, placed.number
 
 
 def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:
-    """Set the uniforms by which a program writes the number of the seen surface."""
+    """Set the uniforms with which a program writes surface numbers."""
     for name, value in (("numbers", numbers), ("depth_range", view.depth_range)):
         if name in program:  # absent in programs for strands, or without depths
             program[name] = value

@@ -1,4 +1,4 @@
-"""Dense hair hides the skin below it, which then needs no shading."""
+"""Depths of dense hair, drawn first so that hidden skin is not shaded."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ def hide_below(
     program: moderngl.Program,
 ) -> None:
     """Draw the depth of dense hair among parts, by shadow.glsl with SHELLS."""
-    # It lies so near to the lowest layer that rounding would hide parts of that, too.
+    # It is so near to the lowest layer of hair that rounding would also hide parts of this layer.
     program.ctx.polygon_offset = FARTHER
     for each in parts:
         covered = view.covered_pixels(each.corners)

@@ -1,4 +1,4 @@
-"""Smooth edges of a scene with one sample a pixel, in a separate pass.
+"""Smoothing of edges, in separate passes, for a scene with one sample per pixel.
 
 A first pass finds the edges, a second smooths them. On software OpenGL this takes half the time of
 a single pass: the second pass skips pixels without edges by an early depth test.

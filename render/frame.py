@@ -1,8 +1,8 @@
-"""A picture as a value: a view, a style, a mesh, parts and lines; `Renderer.draw` draws it.
+"""A picture as a value: view, style, mesh, parts and lines; `Renderer.draw` draws it.
 
-A frame holds all that its picture depends on. So it gives the same picture at any time, between any
-other frames. Its parts keep the shape of the time when the frame was made. Its mesh lies in the
-buffers of a stream, so a frame can be drawn until the stream is filled again.
+A frame contains all inputs of its picture, so the same frame always gives the same picture. Its
+parts keep the shape that they had when the frame was made. Its mesh lies in the buffers of a
+stream, so a frame can be drawn until the stream is filled again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,17 +21,16 @@ Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d >
 
 
 class DrawnPart(Protocol):
-    """The attributes of a part that are read.
+    """The attributes of a part that the renderer reads.
 
-    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
-        other arrays of the same shape whenever its shape has changed.
-    faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
-        drawn. colours: sRGB 0..1, shape (n, 3), float32.
-    bone: whose transform moves it. shine: 0 dull, 1 wet.
-    is_enclosed: whether it lies within another surface, where no light from behind arrives.
-    strand_radius: half the thickness of its strands; 0 for a solid part.
-    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of shells also
-        the way from root to tip [mm], at 0.6 of which vertices lie, and how dense it is, (n, 6).
+    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid returns
+    new arrays of the same shape whenever its form has changed. faces: counter-clockwise seen from
+    outside, shape (m, 3), int32; back faces are not drawn. colours: sRGB 0..1, shape (n, 3),
+    float32. bone: the bone whose transform moves the part. shine: 0 dull, 1 wet. is_enclosed:
+    whether it lies within another surface, where no light from behind arrives. strand_radius: half
+    the thickness of its strands; 0 for a solid part. striation: place of each vertex across and
+    along fibres [mm], (n, 2), or None. Shells have further columns, (n, 6): the vector from root to
+    tip [mm], at 0.6 of which the vertices lie, and the density.
     """
 
     @property
@@ -58,14 +57,13 @@ class DrawnPart(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PlacedPart:
-    """A part, in its place and shape at the time of this object's creation.
+    """A part with the place and shape that it has when this object is created.
 
     transform: from the part to the world, for column vectors, shape (4, 4).
-    lies_beneath: whether it belongs under the skin: skin that is not opened hides it, even where
-        the part comes out.
-    throws_shadow: whether it throws a shadow on other parts and on the skin.
-    opening: the one through which light reaches it; None: light comes from all around.
-    vertices, normals, colours: those of the part.
+    lies_beneath: whether the part belongs under the skin: closed skin hides it, even where the part
+    comes out. throws_shadow: whether it throws a shadow on other parts and on the skin. opening:
+    the opening through which light reaches it; None: light comes from all around. vertices,
+    normals, colours: those of the part.
     """
 
     part: DrawnPart
@@ -91,7 +89,7 @@ class PlacedPart:
         throws_shadow: bool = False,
         opening: Opening | None = None,
     ) -> Self:
-        """A part in the place that the matrix of its bone gives; ValueError without a matrix."""
+        """A part in the place given by the matrix of its bone; ValueError without a matrix."""
         if part.bone not in transforms:
             raise ValueError(
                 f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
@@ -114,7 +112,7 @@ class SkinMaps:
 
 
 NO_MAPS = SkinMaps()
-"""Maps of skin in one colour, without a texture."""
+"""The maps of a skin in one colour, without a texture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +120,11 @@ class Skin:
     """The mesh of a frame: the last upload of a stream, with its maps and colours.
 
     maps: they need a stream of 8 columns or more, ValueError else.
-    fading: places around all of the mesh that fades as its columns 17 and 18 have it, (n, 3); None:
-        all of it shows. They need a stream of 18 columns, ValueError else.
-    mouth: the rim of its lips, see `Opening.rim`: through them the inner side of a neck shows that
-        is hidden where it fades; None: there are none.
-    values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed unless
-        that is NONE.
+    fading: points around the part of the mesh that fades by columns 17 and 18, (n, 3); None:
+    nothing fades. They need a stream of 18 columns, ValueError else. mouth: the rim of its lips,
+    see `Opening.rim`: through the lips the inner side of a neck shows that is hidden where it
+    fades; None: there are no lips. values: the number that colours each triangle, see `ColourBy`,
+    shape (M,), uint8; needed unless the style has `ColourBy.NONE`.
     """
 
     stream: MeshBuffers
@@ -154,7 +151,7 @@ class Skin:
             )
 
     def shown_maps(self, style: Style) -> dict[BumpMap, float]:
-        """The fine shape that tilts normals in a style, and the strength of each map, 0 to 1."""
+        """Map of fine shape that tilts normals in a style, and the strength of each map, 0 to 1."""
         shown = {}
         if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
             shown[self.maps.bumps] = style.bumps
@@ -166,11 +163,11 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """All that one viewport shows.
+    """The content of one viewport.
 
     style: shading and colours, with the background and the opacity of the skin.
     cut: in front of it a translucent skin is opaque.
-    overlays: lines over everything.
+    overlays: lines that are drawn over everything.
     """
 
     view: CameraView

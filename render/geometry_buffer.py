@@ -1,6 +1,6 @@
-"""The surface in each pixel of a picture, as numbers: its distance, its normal, its triangle.
+"""G-buffer: distance, normal and triangle of the surface in each pixel of a picture.
 
-They are drawn from the buffers of the colours by the same matrices, but with one sample in the
+It is drawn from the same vertex buffers and matrices as the colours, but with one sample in the
 middle of each pixel, so that no number is a mean of two surfaces. Source: Saito and Takahashi 1990,
 "Comprehensible rendering of 3-D shapes" (the G-buffer).
 """
@@ -30,25 +30,27 @@ class Geometry(NamedTuple):
     normal: Floats32
     """Interpolated unit normals of the visible side, shape (H, W, 3)."""
     triangle: Integers32
-    """Number among the triangles of the skin, then of each part without strands, (H, W)."""
+    """Number of the triangle: triangles of the skin come first, then of each part without strands,
+    (H, W).
+    """
     is_inside: Flags
     """Whether a pixel shows the back of a triangle of the skin, shape (H, W)."""
     uv: Floats32
-    """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
+    """Texture coordinates; 0 on parts, and in streams without any, shape (H, W, 2)."""
 
 
 class GeometryBuffer:
-    """Float textures of one size."""
+    """The textures of a G-buffer of one size."""
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
         self._gl = gl
-        self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # by their defines
+        self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # programs, by their defines
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
     def draw(self, frame: Frame, parts: Sequence[PlacedBuffers], view: PlacedView) -> Geometry:
-        """Draw the numbers of a frame's skin and of these parts of it; see `Renderer.read`."""
+        """Draw the numbers of a frame's skin and of the given parts; see `Renderer.read`."""
         gl = self._gl
         program = self._program_of({})
         self._target.use()
@@ -74,7 +76,7 @@ class GeometryBuffer:
         return self._read()
 
     def _program_of(self, maps: Mapping[BumpMap, float]) -> moderngl.Program:
-        """The program for a mesh with such maps, ready to draw it."""
+        """Return the program for a mesh with these maps, with its uniforms set."""
         names = tuple(each.define for each in maps)
         if names not in self._programs:
             self._programs[names] = compile_program(self._gl, "geometry.glsl", *names)

@@ -1,9 +1,10 @@
-"""Light of a map from all around: a key that throws shadows, and the rest as smooth light.
+"""Light of an environment map: a key light that throws shadows, and smooth light from all around.
 
-The brightest place of the map becomes the key, with its light beyond that of its surroundings. All
-other light is kept as nine numbers for each colour, spherical harmonics up to the second order,
-which hold the light on a matte surface to a few per cent. The light moves with the camera, as lamps
-do: the middle of the map lies behind the head, its left and right ends behind the viewer.
+The brightest place of the map becomes the key light, with its excess over its surroundings. All
+other light is stored as spherical harmonics up to the second order, nine numbers for each colour,
+which represent the light on a matte surface to a few per cent. The light moves with the camera,
+like the lamps of lights.py: the middle of the map lies behind the head, its left and right ends
+behind the viewer.
 
 Source: Ramamoorthi, Hanrahan 2001, "An efficient representation for irradiance environment maps",
 for the nine numbers. The choice of a key is ours.
@@ -22,20 +23,20 @@ from .style import Light, MapBackground
 
 @dataclass(frozen=True, eq=False)
 class LightMap:
-    """Linear light from all around, in any unit, shape (H, W, 3), W = 2 H.
+    """An environment map: linear light in any unit, shape (H, W, 3), W = 2 H.
 
-    Row 0 is above. Columns run from behind the viewer over the left to the middle, which lies
-    behind the head, and then over the right back.
+    Row 0 is above. Columns run from behind the viewer over the left to behind the head, in the
+    middle of the map, and over the right back to behind the viewer.
     """
 
     radiance: Floats64
 
     def light(self, turn: float = 0.0) -> Light:
-        """The light of the map, turned to the viewer's right by an angle [deg], and exposed."""
+        """Return the exposed light of the map, turned to the viewer's right by an angle [deg]."""
         return self.exposed(turn)[0]
 
     def exposed(self, turn: float) -> tuple[Light, float]:
-        """The result of `light`, and the factor on the radiance."""
+        """Return the result of `light`, and the exposure factor on the radiance."""
         rows, columns = self.radiance.shape[:2]
         every = max(rows // 32, 1)  # steps of 6 degrees are fine enough for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]
@@ -66,9 +67,9 @@ class LightMap:
         )
 
     def background(self, turn: float = 0.0, exposure: float | None = None) -> MapBackground:
-        """The map behind a scene that it lights, out of focus and with the exposure of its light.
+        """Return the background of a scene lit by this map: out of focus, with the same exposure.
 
-        turn: as in `light`. exposure: the factor of `exposed`; None: it is computed again.
+        turn: as in `light`. exposure: the factor from `exposed`; None: it is computed again.
         """
         if exposure is None:
             exposure = self.exposed(turn)[1]
@@ -100,10 +101,10 @@ def _solid_angles(rows: int, columns: int) -> Floats64:
 def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats64, Floats64]:
     """The direction of the key (3,), and its part of the light of each texel (n, 3).
 
-    Light from in front of the face is preferred: a sun behind it belongs to the rest.
+    Light from in front of the face is preferred: a sun behind the head stays in the smooth light.
     """
     lightness = _luminance(radiance) * solid
-    tried = away[::7]  # a part of all: the cost grows with the square
+    tried = away[::7]  # a sample of all texels: the cost grows with the square
     square = np.maximum(tried @ away.T, 0.0) ** 2
     eighth = (square**2) ** 2
     # The 40th power of the cosine is a lobe of some 15 degrees; repeated squares are faster than a
@@ -121,7 +122,7 @@ def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats
 
 
 def _harmonics(normals: Floats64) -> Floats64:
-    """The polynomials of lighting.glsl at normals (n, 3), shape (n, 9)."""
+    """Return the polynomials of lighting.glsl at normals (n, 3), shape (n, 9)."""
     x, y, z = normals.T
     second = [x * y, y * z, x * z, 3.0 * z * z - 1.0, x * x - y * y]
     return np.stack([np.ones_like(x), y, z, x, *second], axis=-1)
@@ -204,4 +205,4 @@ def _pane(
 LIGHT_MAPS: Mapping[str, LightMap] = MappingProxyType(
     {"clouds": LightMap(_clouds()), "room": LightMap(_room()), "street": LightMap(_street())}
 )
-"""Maps by name, which this module computes."""
+"""The maps that this module computes, by name."""

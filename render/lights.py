@@ -1,4 +1,4 @@
-"""Lights by name: lamps of lights.toml, and light from all around of maps."""
+"""Lights by name: lamps from lights.toml, and environment maps."""
 
 import tomllib
 from collections.abc import Mapping

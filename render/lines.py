@@ -11,7 +11,7 @@ from .style import Colour
 
 
 class Lines(NamedTuple):
-    """Polylines, which shine through surfaces that hide them."""
+    """Polylines, visible through the surfaces in front of them."""
 
     polylines: Sequence[npt.NDArray[Any]]
     """Points of each line, shape (n, 3)."""
@@ -25,7 +25,7 @@ class Lines(NamedTuple):
     """Opacity in front of all surfaces, 0 to 1."""
 
     def segments(self) -> tuple[Floats32, Unsigned32]:
-        """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2)."""
+        """Position and sRGB of all points, (n, 6), and the end points of each segment, (s, 2)."""
         polylines = self.polylines
         colours = np.asarray(self.colour, np.float32)
         counts = np.array([len(line) for line in polylines], np.int64)

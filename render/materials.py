@@ -14,7 +14,7 @@ from .programs import write_uniform
 from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
 
-SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
+SKIN_SHARPNESS = 28.0  # exponent of the skin's highlight; chosen by eye: a soft sheen, not wet
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
@@ -22,7 +22,7 @@ _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 def mesh_shader(
     style: Style, has_texture: bool, maps: Iterable[BumpMap], fade: Iterable[str]
 ) -> list[str]:
-    """The file and the defines of the program of a mesh; fade: see `fade_defines`."""
+    """Return the file and the defines of the program of a mesh; fade: see `fade_defines`."""
     return [
         "surface.glsl",
         style.shading.name,
@@ -41,7 +41,7 @@ def mesh_shader(
 def part_shader(
     kind: str, opening: tuple[str, ...], has_shadow: bool, is_cut: bool, is_around: bool
 ) -> list[str]:
-    """The file and the defines of the program of parts of a kind, see `PartBuffers`.
+    """Return the file and the defines of the program of a kind of parts, see `PartBuffers`.
 
     opening: the `Opening.defines` of the opening in front of them; empty without one.
     is_around: whether light comes from all around, by nine coefficients.
@@ -55,9 +55,9 @@ def part_shader(
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:
-    """Set how a mesh of this style takes light, its wireframe, and its colours by values."""
+    """Set the uniforms of a style: reflection of light, wireframe, and colours by values."""
     set_light(program, style.light)
-    if "albedo" in program:  # absent where a texture takes its place
+    if "albedo" in program:  # absent where a texture replaces it
         program["albedo"] = tuple(to_linear(style.albedo))
     program["inner_albedo"] = tuple(to_linear(style.inside))
     program["subsurface"] = style.scattering
@@ -74,7 +74,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
     """Set highlights of a part, from dull (broad and faint) to wet (small and bright).
 
-    Call `set_light` before. Enclosed parts and fibres get none of its light from behind.
+    Call `set_light` first. Enclosed parts and fibres get no light from behind.
     """
     kind = part.kind
     shine = part.shine
@@ -85,7 +85,7 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     program["rim_light"] = (0.0, 0.0, 0.0) if is_rimless else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
-    # A wet part, or a part that is not enclosed, is dark by itself, not because light is missing.
+    # If a wet or not enclosed part is dark, its own colour is dark; light is not missing.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
     if kind == "STRANDS":  # half their thickness, and a pixel at distance 1
@@ -111,9 +111,9 @@ def set_light(program: moderngl.Program, light: Light) -> None:
 def value_texture(
     gl: moderngl.Context, values: Unsigned8 | None, triangle_count: int
 ) -> moderngl.Texture:
-    """A texture with one small number per triangle, (M,), which gl_PrimitiveID looks up.
+    """Return a texture with one small number per triangle, (M,), indexed by gl_PrimitiveID.
 
-    Raises ValueError for no numbers, or another count.
+    Raises ValueError without numbers, or for another count.
     """
     if values is None:
         raise ValueError("the style colours by values, so the skin needs values, one per triangle")

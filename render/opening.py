@@ -1,4 +1,4 @@
-"""Openings in a skin, between lids or lips, which let light in to the parts behind them."""
+"""Openings in a skin, between lids or lips, through which light reaches the parts behind."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Opening:
 
     rim: points of the world around it, clockwise seen from outside, its upper half first, shape
         (RIM_POINTS, 3).
-    is_filled: whether the part comes up to the rim, as an eyeball does between lids; else it lies
-        behind it, as teeth do behind lips.
+    is_filled: whether the part reaches the rim, like an eyeball between lids; else the part lies
+    behind the rim, like teeth behind lips.
     """
 
     RIM_POINTS: ClassVar[int] = 12
@@ -30,7 +30,7 @@ class Opening:
 
     @property
     def defines(self) -> tuple[str, str]:
-        """The define of its kind in opening.glsl, and the number of points of its rim."""
+        """The define of its kind in opening.glsl, and the number of its rim points."""
         kind = "FILLED" if self.is_filled else "BEHIND"
         return kind, RIM_DEFINE
 
@@ -47,13 +47,13 @@ RIM_DEFINE = f"RIM_POINTS {Opening.RIM_POINTS}"
 
 
 def set_rim(program: moderngl.Program, name: str, rim: Floats64, view: PlacedView) -> None:
-    """Set a rim, see `Opening.rim`, as places in the view."""
+    """Set the rim, see `Opening.rim`, in view coordinates."""
     seen = np.column_stack([rim, np.ones(len(rim))]) @ view.world_to_view
     write_uniform(program, name, seen[:, :3])
 
 
 def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
-    """Set both halves of a rim as curves over the way from corner to corner."""
+    """Set both halves of a rim as curves over the line from corner to corner."""
     half = len(rim) // 2
     first = rim[0]
     last = rim[half]

@@ -1,4 +1,4 @@
-"""Coloured parts, moved by bones: uploaded once, and again when a part changes its shape."""
+"""Coloured parts, moved by bones: uploaded at first, and again after a change of shape."""
 
 import weakref
 from collections.abc import Callable, Iterable
@@ -20,9 +20,9 @@ from .translucency import blending
 OF_SHELLS = "in_strand", "in_way", "in_dense"
 # Striped parts: columns of their striation -> kind, layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
-LAYERS = 9  # of shells; more take longer, fewer show gaps
+LAYERS = 9  # number of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # shells
-LAYER_PIXELS = 10.0  # for each layer, where shells are thickest
+LAYER_PIXELS = 10.0  # pixels for each layer, where shells are thickest
 SHADING_DENSITY = 0.6  # of shells, from which they throw a shadow
 # Of shells, from which on the lowest layer lets nothing through, wherever it is seen from: there
 # is 1 in shells.glsl for the most ragged strand.
@@ -31,9 +31,9 @@ LEAST_RISE = 0.5  # of strands out of the surface, as a cosine, where they hide 
 
 
 class PartBuffers:
-    """A part on the graphics card, and the arrays that it was read from.
+    """A part on the graphics card, and the arrays from which it was uploaded.
 
-    It keeps no part alive: `PartStore` releases it with its part.
+    It holds no reference to the part: `PartStore` releases it with the part.
     """
 
     def __init__(self, gl: moderngl.Context, part: DrawnPart) -> None:
@@ -66,7 +66,8 @@ class PartBuffers:
         if self._way is not None and part.striation is not None:
             least = part.striation[:, 5][part.faces].min(axis=1)
             self._throwing = _chosen(gl, part.faces[least > SHADING_DENSITY])
-            # Not the inside of hair that hangs, seen from the roots, and no hair that lies flat.
+            # Without the inside of hanging hair, seen from the roots, and without hair that lies
+            # flat.
             a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
             outward = unit_vectors(np.cross(b - a, c - a))[:, None]
             rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
@@ -75,7 +76,7 @@ class PartBuffers:
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
-        """Upload the vertices of its part, unless they are the last uploaded ones."""
+        """Upload the vertices of its part, unless these arrays have been uploaded before."""
         vertices = placed.vertices
         if vertices is self._uploaded:
             return
@@ -87,25 +88,25 @@ class PartBuffers:
         self._uploaded = vertices
 
     def draw(self, program: moderngl.Program, *, layers: int = 1) -> None:
-        """Draw it; the program has in_position, and in_normal and in_colour if it needs them.
+        """Draw the part; the program has in_position, and in_normal and in_colour if needed.
 
         layers: number of layers, for shells.
         """
         self._render(program, self._indices, len(self.faces), layers)
 
     def draw_shadow(self, program: moderngl.Program) -> None:
-        """Draw the faces that throw a shadow; the thin hem of shells throws none."""
+        """Draw the faces that throw a shadow; the thin edge of shells throws no shadow."""
         self._render(program, *self._throwing, 1)
 
     def draw_hiding(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Draw shells where they are so dense that they hide all below."""
+        """Draw shells where they are dense enough to hide everything below."""
         program["layers"] = self.layer_count(view)
         self._render(program, *self._hiding, 1)
 
     def _render(
         self, program: moderngl.Program, indices: moderngl.Buffer, count: int, layers: int
     ) -> None:
-        """Draw this many triangles of an index buffer, their outer side."""
+        """Draw the front faces of the first triangles of an index buffer."""
         if not count:
             return
         if (program, indices) not in self._arrays:
@@ -127,7 +128,7 @@ class PartBuffers:
         return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
 
     def draw_shells(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Draw its layers from the inside out; the thin outer ones do not hide others."""
+        """Draw the layers from the inside out; the thin outer layers do not write depths."""
         layers = self.layer_count(view)
         inner = -(-layers // 2)
         program["layers"] = layers
@@ -138,7 +139,7 @@ class PartBuffers:
 
 
 def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, int]:
-    """A buffer of triangles, which may be none, and their number."""
+    """Return a buffer of triangles, None without triangles, and their number."""
     indices = np.ascontiguousarray(faces, np.uint32)
     return gl.buffer(indices.tobytes() or bytes(12)), len(indices)
 
@@ -146,7 +147,7 @@ def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, i
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
     """Relative breadth of three-sided strands at each vertex: 1, but 0 at tips, shape (n, 1).
 
-    Three triangles meet at a tip, and three edges; at an open end there are four edges.
+    At a tip three triangles and three edges meet; at an open end there are four edges.
     """
     following = np.roll(faces, -1, axis=1)
     edges = np.stack([np.minimum(faces, following), np.maximum(faces, following)], axis=-1)
@@ -160,7 +161,7 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 class PlacedBuffers(NamedTuple):
     """A placed part, and the buffers that hold it.
 
-    number: that of its surface, see surface_number.glsl; for the skin see coverage.py.
+    number: its surface number, see surface_number.glsl; for the skin see coverage.py.
     """
 
     buffers: PartBuffers
@@ -168,12 +169,12 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """The same part as a background, whose edges are already smooth."""
+        """Same part with the number of the background, whose edges are already smooth."""
         return self._replace(number=0)
 
     @property
     def corners(self) -> Floats64:
-        """Corners of its bounding box in the world, shape (8, 3)."""
+        """Return the corners of its bounding box in the world, shape (8, 3)."""
         return moved_points(self.part.transform, self.buffers.corners)
 
 
@@ -186,11 +187,11 @@ class PartStore:
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        # By the id of the part; another part may get this id after this one is gone.
+        # By the id of the part; the id may be reused when the part no longer exists.
         self._known: dict[int, tuple[Callable[[], DrawnPart | None], PartBuffers]] = {}
 
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
-        """Each part, uploaded when it is new or has changed its shape."""
+        """Return the buffers of each part, uploaded if the part is new or has changed its shape."""
         self._forget_lost()
         return [
             PlacedBuffers(self._buffers_of(each), each, 2 + index % 187)
@@ -215,7 +216,7 @@ class PartStore:
 
 
 def _reference_to(part: DrawnPart) -> Callable[[], DrawnPart | None]:
-    """A call that returns the part while it exists; without weak references it is kept."""
+    """Return a function that returns the part while it exists; without weak references, always."""
     try:
         return weakref.ref(part)
     except TypeError:  # for example a named tuple

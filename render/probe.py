@@ -1,4 +1,4 @@
-"""The OpenGL of this machine, probed without risk to the caller.
+"""Probes the OpenGL of this machine without risk to the caller.
 
 A broken driver may crash the process that loads it, so each attempt runs in its own Python process,
 which writes one JSON object.
@@ -16,11 +16,11 @@ _PATIENCE = 60.0  # [s] software drivers need a few seconds on a loaded machine
 
 @dataclass(frozen=True)
 class Finding:
-    """One way to draw, and whether it works here.
+    """A way to draw, and whether it works on this machine.
 
     name: "offscreen" or "window".
-    message: the GLError's text where it failed, "" if it works.
-    lends_gpu_streams: whether meshes can be refined on the graphics card that draws them.
+    message: text of the GLError if it failed, "" if it works. lends_gpu_streams: whether meshes can
+    be refined on the graphics card that draws them.
     """
 
     name: str
@@ -68,7 +68,7 @@ def _probe_in_process(name: str) -> Finding:
 
 
 def write_finding(name: str) -> None:
-    """Try one way to draw in this process; write the fields of a Finding to standard output."""
+    """Try one way to draw in this process; write the fields of a Finding to stdout."""
     from .surface import NEWEST_VERSION, Surface, open_offscreen
     from .window import open_window
 

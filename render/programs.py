@@ -1,4 +1,4 @@
-"""From GLSL files to compiled programs: one file per program, whose stages a define chooses.
+"""Compiles GLSL files to programs: one file per program; a define chooses the stage.
 
 `#include "name.glsl"` is replaced by that file. Compile errors are raised as GLError with file,
 stage and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
@@ -21,10 +21,10 @@ _INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 
 @cache
 def shader_text(name: str) -> str:
-    """The text of a GLSL file of this package, its includes filled in."""
+    """Return the text of a GLSL file of this package with its includes."""
     text = (SHADER_FOLDER / name).read_text(encoding="utf-8")
 
-    # Line numbers in the driver's messages are those of the file: included lines do not count.
+    # Line numbers in the driver's messages refer to the file itself: included lines do not count.
     def fill(match: re.Match[str]) -> str:
         """The text of an include."""
         line = text.count("\n", 0, match.start()) + 2
@@ -51,7 +51,7 @@ def compile_program(
             fragment_shader=stage("FRAGMENT"),
         )
     except Exception as error:
-        # The stage and the driver's first complaint, out of moderngl's page of text.
+        # The stage and the driver's first error, extracted from moderngl's long text.
         at, complaint = (
             found[0].strip() if (found := re.search(pattern, str(error))) else "?"
             for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")

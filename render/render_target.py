@@ -1,4 +1,4 @@
-"""Target of a scene's drawing: its colours, and the surface that each pixel shows.
+"""The target into which a scene is drawn: colours, and the surface that each pixel shows.
 
 Each pixel is shaded once. If it shows several surfaces, `sample_mixer.py` mixes their colours.
 """
@@ -18,9 +18,9 @@ Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the 
 class RenderTarget:
     """Textures of `size` pixels.
 
-    samples: number of samples of each pixel that smooth its edges, 0 = edges stay.
-    colour: the picture. surfaces: numbers and depths of surfaces, see surface_number.glsl.
-    frame: a framebuffer with the colour, and a depth.
+    samples: number of samples per pixel that smooth edges, 0 = no smoothing. colour: the picture.
+    surfaces: numbers and depths of surfaces, see surface_number.glsl. frame: a framebuffer with the
+    colour, and a depth.
     """
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
@@ -44,34 +44,34 @@ class RenderTarget:
 
     def release(self) -> None:
         """Release everything to OpenGL; afterwards no drawing is possible."""
-        # moderngl binds the last bound framebuffer again whenever it makes one.
+        # moderngl binds the last bound framebuffer again whenever it makes a framebuffer.
         self._gl.detect_framebuffer(0).use()
         for each in (self.frame, self._numbered, self._both, self.colour, self.surfaces):
             each.release()
 
     def start(self) -> None:
-        """Empty it; the frame is bound."""
+        """Clear the target and bind its frame."""
         self.frame_number += 1
         self.forget_surfaces()
         self.use_frame()
         self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
 
     def forget_surfaces(self) -> None:
-        """Turn all drawings so far into background, whose edges are not smoothed again."""
+        """Make all drawings so far background, whose edges are not smoothed again."""
         if self.samples:
             self._gl.scissor = None
             self._numbered.clear(green=1.0)  # no number, and the greatest depth
 
     def use_frame(self) -> None:
-        """Direct drawing to the frame, over all drawings so far."""
+        """Draw into the frame from now on, over all earlier drawings."""
         self.use((0, 0, *self.size), None)
 
     def use(
         self, viewport: Rectangle, part: Rectangle | None, *, has_numbers: bool = False
     ) -> None:
-        """Direct drawing to the frame, within `part` of the viewport (None: all).
+        """Draw into the frame from now on, within `part` of the viewport (None: all).
 
-        has_numbers: whether programs write numbers of surfaces, too.
+        has_numbers: whether programs also write surface numbers.
         """
         (self._both if has_numbers else self.frame).use()
         self._gl.viewport = viewport
@@ -93,14 +93,14 @@ class RenderTarget:
 
 
 def _texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
-    """Four bytes a pixel, which end at the borders."""
+    """Return a texture of four bytes per pixel, clamped at the borders."""
     texture = gl.texture(size, 4)
     texture.repeat_x = texture.repeat_y = False
     return texture
 
 
 def scaled(viewport: Rectangle, scale: float) -> Rectangle:
-    """The pixels of a viewport on a target of another scale; ValueError for no pixels."""
+    """Return the pixels of a viewport on a scaled target; ValueError if there are none."""
     left, bottom, width, height = viewport
     if width < 1 or height < 1:
         raise ValueError(
@@ -116,7 +116,7 @@ def scaled(viewport: Rectangle, scale: float) -> Rectangle:
 
 
 def around(rectangles: Sequence[Rectangle]) -> Rectangle:
-    """The smallest rectangle that holds all."""
+    """Return the smallest rectangle that contains all."""
     left = min(each[0] for each in rectangles)
     bottom = min(each[1] for each in rectangles)
     right = max(each[0] + each[2] for each in rectangles)
@@ -125,7 +125,7 @@ def around(rectangles: Sequence[Rectangle]) -> Rectangle:
 
 
 def intersection(first: Rectangle, second: Rectangle) -> Rectangle:
-    """The pixels of both rectangles; a width or height of 0 where they share none."""
+    """Return the intersection of two rectangles; its width or height is 0 if it is empty."""
     left = max(first[0], second[0])
     bottom = max(first[1], second[1])
     right = min(first[0] + first[2], second[0] + second[2])
