@@ -1,4 +1,4 @@
-"""The mechanism: refiner and its options, comparison, colours, overlays, times of a frame."""
+"""The panel of refinement: refiner, options, comparison, colours, overlays, frame times."""
 
 from __future__ import annotations
 

@@ -307,7 +307,7 @@ class LevelOfDetail:
 
     @property
     def unhurried(self) -> render.Detail:
-        """The detail for a scene that seldom moves: at least the first level of software OpenGL."""
+        """The detail for a scene that seldom moves: software OpenGL's first level, or finer."""
         return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:

@@ -132,20 +132,20 @@ class KeySelection:
         return f"Whole pose keyed at {time:.2f} s"
 
     def keys_of(self, names: Iterable[str]) -> Places:
-        """The keys of these controls' tracks at the present time."""
+        """Return the keys at the present time in the tracks of these controls."""
         session = self._session
         reach = 0.5 * keyframes.FRAME
         there = keyframes.places_of(session.script).near(session.time, reach).times
         return Places({name: there[name] for name in names if name in there})
 
     def delete_keys_of(self, names: Collection[str]) -> Message:
-        """Delete the keys of these controls' tracks at the present time."""
+        """Delete the keys at the present time in the tracks of these controls."""
         session = self._session
         session.edit(keyframes.without(session.script, self.keys_of(names)))
         return f"{listed(names)}: key deleted; [Undo] brings back"
 
     def clear_tracks_of(self, names: Collection[str]) -> Message:
-        """Delete all keys of the tracks of these controls."""
+        """Delete all keys in the tracks of these controls."""
         session = self._session
         tracks = session.script.tracks
         places = Places({name: tracks[name].times for name in names if name in tracks})
