@@ -30,7 +30,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.arrays import Flags, Floats64, Integers64
+from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, polyline_distance, smoothstep
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
@@ -191,7 +191,6 @@ def _one_eye(
     even: Smooth,
 ) -> _OneEye:
     """Find the lids of one eye, and the turn of each lid vertex."""
-    side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
     outline = landmarks[list(EYE_LANDMARKS[ball.side])]
     outer = outline[0]
@@ -199,7 +198,9 @@ def _one_eye(
     axes = _LidAxes(ball.centre, up, forward, outer, inner - outer)
     column = axes.column(x)
     angle = axes.angle(x)
-    upper, lower = _both_lids(eyes, surface, axes, outline, side)
+    edges = _front_edges(surface, axes, outline)
+    side = side_with_edges(lid_side(surface, landmarks, ball.side), *edges)
+    upper, lower = _both_lids(eyes, surface, axes, edges, side)
     where = np.linspace(0.0, 1.0, COLUMNS)
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
@@ -222,6 +223,7 @@ def _one_eye(
     rises = np.interp(column, where, plain_seam)
     closing += weight * (meeting - rises)
     margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
+    margins[np.concatenate(edges)] = True
     closing[margins] = (meeting - angle)[margins]
     closing = _evened(even, closing, np.minimum(upper.distance, lower.distance), margins)
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
@@ -266,15 +268,18 @@ def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
 
 
 def _both_lids(
-    eyes: Eyes, surface: SkinSurface, axes: _LidAxes, outline: Floats64, side: Floats64
+    eyes: Eyes,
+    surface: SkinSurface,
+    axes: _LidAxes,
+    edges: tuple[Integers32, Integers32],
+    side: Floats64,
 ) -> tuple[_OneLid, _OneLid]:
-    """The upper and the lower lid; outline: an eye's landmarks from the outer corner, (6, 3)."""
-    upper_line = outline[[0, 1, 2, 3]]
-    lower_line = outline[[0, 5, 4, 3]]
+    """The upper and the lower lid; edges: vertices of their front edges."""
+    upper_edge, lower_edge = edges
     upper_ends = (eyes.fold_plateau, eyes.fold_reach)
     lower_ends = (eyes.lid_plateau, eyes.lid_reach)
-    upper = _one_lid(eyes, surface, axes, upper_line, side > 0.0, upper_ends)
-    lower = _one_lid(eyes, surface, axes, lower_line, side < 0.0, lower_ends)
+    upper = _one_lid(eyes, surface, axes, upper_edge, side > 0.0, upper_ends)
+    lower = _one_lid(eyes, surface, axes, lower_edge, side < 0.0, lower_ends)
     return upper, lower
 
 
@@ -336,12 +341,12 @@ def _one_lid(
     eyes: Eyes,
     surface: SkinSurface,
     axes: _LidAxes,
-    line: Floats64,
+    edge_vertices: Integers32,
     on_lid: Flags,
     fold_ends: tuple[float, float],
 ) -> _OneLid:
-    """Measure one lid along its line of landmarks (4, 3). fold_ends: mm, plateau and reach."""
-    edge = _front_edge(surface, line, axes)
+    """Measure one lid along its front edge. fold_ends: mm, plateau and reach."""
+    edge = surface.positions[edge_vertices]
     distance = polyline_distance(surface.positions, edge)
     column = axes.column(surface.positions)
     edge = edge[np.argsort(axes.column(edge), kind="stable")]
@@ -360,16 +365,40 @@ def _one_lid(
     )
 
 
-def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Floats64:
-    """Return the path along the mesh near a lid's line of landmarks (4, 3), points (n, 3)."""
+def _front_edges(
+    surface: SkinSurface, axes: _LidAxes, outline: Floats64
+) -> tuple[Integers32, Integers32]:
+    """Vertices of the front edges of the upper and the lower lid, from corner to corner.
+
+    outline: an eye's landmarks from the outer corner, (6, 3).
+    """
+    upper = _front_edge(surface, outline[[0, 1, 2, 3]], axes)
+    lower = _front_edge(surface, outline[[0, 5, 4, 3]], axes)
+    return upper, lower
+
+
+def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Integers32:
+    """Vertices of the path along the mesh near a lid's line of landmarks (4, 3)."""
     x = surface.positions
     reaches = np.linalg.norm(line - axes.centre, axis=1)
     order = np.argsort(axes.column(line))
     expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
     edge_cost = 0.3  # cost per mm off the landmarks' distance from the eyeball, where no edge is
     behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
-    edge: Floats64 = x[surface.way_through(surface.nearest(line), behind)]
+    edge: Integers32 = surface.way_through(surface.nearest(line), behind)
     return edge
+
+
+def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Floats64:
+    """Side of each vertex (V,), 1 or -1 on the front edges of the upper and the lower lid.
+
+    Beside a corner of the eye, a coarse mesh may have a vertex of the upper edge that lies nearer
+    to the lower landmarks.
+    """
+    found = side.copy()
+    found[np.setdiff1d(upper, lower)] = 1.0
+    found[np.setdiff1d(lower, upper)] = -1.0
+    return found
 
 
 def _smoothed(height: Floats64) -> Floats64:

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.sim.face_model import build_face_model
-from risorius.sim.lids import COLUMNS, gaze_share_of, raised_at_corners
+from risorius.sim.lids import COLUMNS, gaze_share_of, raised_at_corners, side_with_edges
 from tests.sim.poses import both_sides, settled_displacement
 
 WHERE = np.linspace(0.0, 1.0, COLUMNS)
@@ -79,3 +79,27 @@ def test_skin_beside_the_inner_corner_slides_along(simulation, head):
     lengths = norm(np.diff(head.vertices[edges], axis=1)[:, 0], axis=1)
     folded = np.abs(np.diff(aside[edges], axis=1)[:, 0]) / lengths
     assert folded.max() < 0.2
+
+
+def test_shut_lids_overlap_beside_the_corners(simulation, head):
+    """The last vertices of an upper lid come down as far as its middle.
+
+    They were no margin where the sampled edge ran above them, and stopped 0.2 mm too high; on
+    coarse heads a gap stayed there.
+    """
+    shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
+    x = head.vertices + settled_displacement(simulation, shut)
+    for side in ("left", "right"):
+        ring = head.rings[f"eye_2_{side}"]
+        lower = ring[np.r_[10:20, 0]]
+        lower = lower[np.argsort(x[lower, 0])]
+        beside = ring[[1, 9]]
+        overlap = np.interp(x[beside, 0], *x[lower, :2].T) - x[beside, 1]
+        assert (overlap > [0.4, 0.8]).all(), side
+
+
+def test_vertices_of_an_edge_are_on_its_lid():
+    """One that lies nearer to the landmarks of the other lid is on its own; corners stay."""
+    side = np.array([-0.5, 1.0, -0.3, -0.5, -1.0, 0.2])
+    found = side_with_edges(side, np.array([0, 1, 2, 3]), np.array([0, 4, 5, 3]))
+    assert_array_equal(found, [-0.5, 1.0, 1.0, -0.5, -1.0, -1.0])
