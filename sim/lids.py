@@ -32,6 +32,7 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, polyline_distance, smoothstep
+from .lid_edges import LidAxes, front_edges, side_with_edges
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
 from .lip_lid_sides import lid_side
@@ -161,26 +162,6 @@ def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Float
     return up, forward
 
 
-class _LidAxes(NamedTuple):
-    """Coordinates of points relative to the line from the outer to the inner corner of an eye."""
-
-    centre: Floats64  # of the eyeball
-    up: Floats64
-    forward: Floats64
-    corner: Floats64  # the outer one
-    axis: Floats64  # from there to the inner one [mm]
-
-    def angle(self, points: Floats64) -> Floats64:
-        """Angle [rad] about the axis of the lids, 0 straight forward."""
-        away = points - self.centre
-        return np.arctan2(away @ self.up, away @ self.forward)
-
-    def column(self, points: Floats64) -> Floats64:
-        """Place from the outer corner of the eye, 0, to the inner one, 1."""
-        column: Floats64 = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
-        return column
-
-
 def _one_eye(
     eyes: Eyes,
     surface: SkinSurface,
@@ -193,12 +174,10 @@ def _one_eye(
     """Find the lids of one eye, and the turn of each lid vertex."""
     x = surface.positions
     outline = landmarks[list(EYE_LANDMARKS[ball.side])]
-    outer = outline[0]
-    inner = outline[3]
-    axes = _LidAxes(ball.centre, up, forward, outer, inner - outer)
+    axes = LidAxes(ball.centre, up, forward, outline[0], outline[3] - outline[0])
     column = axes.column(x)
     angle = axes.angle(x)
-    edges = _front_edges(surface, axes, outline)
+    edges = front_edges(surface, axes, outline)
     side = side_with_edges(lid_side(surface, landmarks, ball.side), *edges)
     upper, lower = _both_lids(eyes, surface, axes, edges, side)
     where = np.linspace(0.0, 1.0, COLUMNS)
@@ -270,7 +249,7 @@ def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
 def _both_lids(
     eyes: Eyes,
     surface: SkinSurface,
-    axes: _LidAxes,
+    axes: LidAxes,
     edges: tuple[Integers32, Integers32],
     side: Floats64,
 ) -> tuple[_OneLid, _OneLid]:
@@ -340,7 +319,7 @@ class _OneLid(NamedTuple):
 def _one_lid(
     eyes: Eyes,
     surface: SkinSurface,
-    axes: _LidAxes,
+    axes: LidAxes,
     edge_vertices: Integers32,
     on_lid: Flags,
     fold_ends: tuple[float, float],
@@ -363,42 +342,6 @@ def _one_lid(
         front=np.interp(where, places, axes.angle(edge)),
         depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
     )
-
-
-def _front_edges(
-    surface: SkinSurface, axes: _LidAxes, outline: Floats64
-) -> tuple[Integers32, Integers32]:
-    """Vertices of the front edges of the upper and the lower lid, from corner to corner.
-
-    outline: an eye's landmarks from the outer corner, (6, 3).
-    """
-    upper = _front_edge(surface, outline[[0, 1, 2, 3]], axes)
-    lower = _front_edge(surface, outline[[0, 5, 4, 3]], axes)
-    return upper, lower
-
-
-def _front_edge(surface: SkinSurface, line: Floats64, axes: _LidAxes) -> Integers32:
-    """Vertices of the path along the mesh near a lid's line of landmarks (4, 3)."""
-    x = surface.positions
-    reaches = np.linalg.norm(line - axes.centre, axis=1)
-    order = np.argsort(axes.column(line))
-    expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
-    edge_cost = 0.3  # cost per mm off the landmarks' distance from the eyeball, where no edge is
-    behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
-    edge: Integers32 = surface.way_through(surface.nearest(line), behind)
-    return edge
-
-
-def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Floats64:
-    """Side of each vertex (V,), 1 or -1 on the front edges of the upper and the lower lid.
-
-    Beside a corner of the eye, a coarse mesh may have a vertex of the upper edge that lies nearer
-    to the lower landmarks.
-    """
-    found = side.copy()
-    found[np.setdiff1d(upper, lower)] = 1.0
-    found[np.setdiff1d(lower, upper)] = -1.0
-    return found
 
 
 def _smoothed(height: Floats64) -> Floats64:
