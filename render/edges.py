@@ -37,7 +37,7 @@ class EdgeSmoother:
         return self._gl.vertex_array(program, [])
 
     def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
-        """Copy a scene and smooth the edges in an area (None: all); a second time does nothing."""
+        """Copy a scene, and smooth edges in an area (None: all); repeated calls do nothing."""
         frame = scene, scene.frame_number, area
         if self._smoothed == frame:
             return

@@ -1,9 +1,9 @@
-"""Smooth edges of a picture whose pixels were shaded once, by samples of coverage.
+"""Smooths the edges of a picture whose pixels were shaded once, by samples of coverage.
 
-Surfaces are drawn a second time, without light: each sample of a pixel finds the surface that it
-sees. Where samples see several surfaces, their colours are mixed. On software OpenGL shading takes
-most of the time of a picture, and shading several samples takes twice as long. Source: Ragan-Kelley
-et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
+Surfaces are drawn a second time, without light, to find the surface that each sample of a pixel
+sees. Where samples of a pixel see several surfaces, the colours of these are mixed. On software
+OpenGL shading takes most of the time of a picture, and shading several samples takes twice as long.
+Source: Ragan-Kelley et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
 """
 
 from collections.abc import Sequence

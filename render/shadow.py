@@ -1,10 +1,11 @@
 """The shadow that a mesh and parts throw in the key light, on themselves and on parts.
 
-A depth map, taken from the key light, which hangs on the camera. It has both sides of a mesh: a
-mesh is thin, and the mouth behind its lit side must be dark. It spans the whole scene and depends
-on no moving thing, so shadows do not flicker with the face. Its texels are coarse on purpose: the
-look-up blends 4 x 4 of them, which sets the softness of the shadow. Source: Williams 1978, "Casting
-curved shadows on curved surfaces"; filtering of depth tests as in Reeves et al. 1987.
+The shadow is a depth map seen from the key light, which moves with the camera. The map has both
+sides of a mesh, because a mesh is thin, and the mouth behind its lit side must be dark. The map
+spans the whole scene and does not depend on moving objects, so shadows do not flicker with the
+face. Its texels are coarse on purpose: the look-up blends 4 x 4 of them, which sets the softness of
+the shadow. Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth
+tests as in Reeves et al. 1987.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,8 @@
 """Smooth edges by samples, as `sample_mixer.py` does, where software draws.
 
-Software OpenGL takes samples of every pixel that a triangle touches, a third of the time of a
-picture. Kernels take them beside edges alone, in one pixel of fifty. The picture lies in the memory
-that they read anyway.
+Software OpenGL samples every pixel that a triangle touches, which takes a third of the time of a
+picture. These kernels sample only pixels beside edges, one pixel in fifty. With software OpenGL the
+picture is already in main memory.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""Triangles that change every frame: arrays that are lent to their maker, and their buffers.
+"""Triangles that change every frame: arrays lent to the program that makes them, and buffers.
 
 The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) by any
 program; `upload` passes exactly those rows to OpenGL. Nothing is allocated per frame. Alternatively
@@ -269,9 +269,9 @@ def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
 class GpuStream(MeshBuffers):
     """Buffers of a mesh, lent to a program on the graphics card that makes the mesh there.
 
-    The command that this program writes draws the mesh, and the processor does not know the number
-    of triangles. Bumps, colours by triangle, and software that leaves hidden triangles out need
-    rows or triangles on the processor: they fetch them, and wait.
+    The mesh is drawn by a command that this program writes, and the number of triangles is not read
+    back. Bumps, colours by triangle, and the software path that omits hidden triangles need rows or
+    triangles on the processor: these fetch them, and wait.
 
     vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
     source_buffer: the triangle that each comes from, int32.

@@ -2,9 +2,9 @@
 
 The albedo comes as sRGB and is stored as square roots of linear light, which shaders square: eight
 bits hold both equally finely. Software OpenGL reads and blends such bytes directly, in two thirds
-of the time that it needs to decode sRGB texel by texel, and neighbours blend almost as light does.
-The smaller versions are means of light itself, so black and white texels look right from afar, not
-like a darker grey.
+of the time of decoding sRGB texel by texel; blended roots are close to blended light. The smaller
+versions are means of linear light, so a mixture of black and white texels is not too dark from
+afar.
 """
 
 import moderngl

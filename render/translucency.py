@@ -1,4 +1,4 @@
-"""Translucent meshes: their nearest layer, blended over the picture so far."""
+"""Translucent meshes: only their nearest layer is blended over the picture."""
 
 import contextlib
 from collections.abc import Iterator, Sequence
@@ -30,7 +30,7 @@ _PREMULTIPLYING_BLEND: Any = (
 def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
     """Blend the drawings of this block over the picture by their opacity.
 
-    hides: whether they hide later drawings behind them.
+    hides: whether these drawings hide later drawings behind them.
     """
     gl.enable(moderngl.BLEND)
     gl.blend_func = _PREMULTIPLYING_BLEND
@@ -61,7 +61,7 @@ def draw_nearest(
     *,
     is_cut: bool,
 ) -> None:
-    """Blend the nearest layer of a mesh alone: its depths first, then the colours at them.
+    """Blend only the nearest layer of a mesh: draw depths first, then colours at these depths.
 
     is_cut: whether parts of it are opaque; their inner side comes before them.
     """
@@ -102,7 +102,7 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
 def fade_defines(skin: Skin, view: PlacedView) -> tuple[str, ...]:
     """The defines for a skin that fades, empty where a picture cannot show it.
 
-    MOUTH: the part that fades may lie before the mouth, or in it.
+    MOUTH: the part that fades may be in front of the mouth, or in it.
     """
     if skin.fading is None or not len(skin.fading):
         return ()

@@ -99,7 +99,7 @@ class WindowSurface(Surface):
     def end(self) -> None:
         """Finish the frame and show it: if resolved, as it is; else the scene with the last panels.
 
-        The latter saves a copy of the scene, and the drawing of unchanged panels.
+        Keeping the last panels saves a copy of the scene, and the drawing of unchanged panels.
         """
         self.make_current()
         if self._is_resolved:

@@ -1,4 +1,4 @@
-"""The whole command `risorius`: the sub-commands of app/, and those of bench/."""
+"""The command `risorius` with the sub-commands of app/ and bench/."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def command() -> click.Group:
-    """Return the whole command."""
+    """Return the command with all sub-commands."""
     from risorius.app.cli import main
     from risorius.bench.commands import bench
     from risorius.bench.reproduce.commands import reproduce

@@ -24,7 +24,7 @@ UNITS = ("AU1", "AU2", "AU4", "AU6", "AU7", "AU10", "AU12", "AU14", "AU15", "AU1
 
 
 class Faces:
-    """A set made by `risorius dataset`, in single files or shards; each item is a sample."""
+    """A data set of `risorius dataset`, in single files or shards; each item is a sample."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         """folder: the set's folder. Raises FileNotFoundError if it has no index."""
@@ -73,7 +73,7 @@ class Faces:
         return {kind: path.read_bytes() for kind, path in names.items() if path.exists()}
 
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
-        """Numbers of samples for training and for testing; no person is in both, none is empty."""
+        """Sample numbers for training and for testing: both not empty, without common persons."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
         count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # with one person, none
         tested = set(persons[:count])

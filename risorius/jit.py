@@ -1,10 +1,10 @@
 """`njit`: numba's decorator with one set of options, and stored machine code that is never stale.
 
 Numba stores machine code itself (`cache=True`), but only checks one file at a time: when a kernel
-changes that another file calls, old code keeps running. So code lies in a folder with a name from a
-digest of all sources of `geometry/`, `refine/`, `render/` and `sim/`, this file, and the versions
-of numba and Python. If one letter changes, everything is compiled again in a new folder. It is
-`risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
+changes that another file calls, old code keeps running. So code is stored in a folder that is named
+by a digest of all sources of `geometry/`, `refine/`, `render/` and `sim/`, this file, and the
+versions of numba and Python. After any change everything is compiled again, into a new folder. It
+is `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
 
 Numba reads its folder from `numba.config.CACHE_DIR` once, when it decorates a function. The
 variable is set for that moment only, so kernels of other programs in the same process keep their
@@ -13,7 +13,7 @@ log reports it once. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly,
 coverage. Fast-math is off unless a kernel asks for it, so results do not depend on the
 vectorisation of a loop.
 
-This file does not depend on the code that it compiles. A copy of `refine/` needs it, too.
+This file does not depend on the code that it compiles. A copy of `refine/` also needs this file.
 """
 
 import functools
@@ -125,7 +125,7 @@ def _remove_old(above: Path) -> None:
     """Remove folders of other digests, except those used last."""
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
-        most_folders = 8  # of other digests, which stay at any age
+        most_folders = 8  # number of folders of other digests that are kept at any age
         unused_seconds = 24 * 3600.0  # after which other folders may be removed
         for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
             if used[folder] < time.time() - unused_seconds:
@@ -135,7 +135,7 @@ def _remove_old(above: Path) -> None:
 class _Compilation(event.Listener):
     """Logs each kernel of this package that is compiled, and sets the compiler for it.
 
-    Numba compiles one function at a time, and those that it calls within it.
+    While numba compiles a function, it also compiles the functions that this function calls.
     """
 
     def __init__(self) -> None:

@@ -16,13 +16,13 @@ from tqdm import tqdm
 from .geometry.arrays import Integers64
 from .refine import View, WeldedRefiner, splits_of_clip
 
-SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a cell was made of
+SOURCE = "vtkOriginalCellIds"  # name in PyVista's filters for the cell from which a cell was made
 
 
 class PolyDataRefiner:
     """Refines one `pyvista.PolyData` in motion; `mesh.risorius.refiner()` makes it."""
 
-    NORMALS = "Normals"  # what PyVista's own filters call them
+    NORMALS = "Normals"  # their names in PyVista's filters
 
     def __init__(self, mesh: pyvista.PolyData, **options: Any) -> None:
         """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
@@ -45,7 +45,7 @@ class PolyDataRefiner:
             The mesh of the frame, with the cells of the mesh at rest, whose data go along; or its
             points alone, shape `(n_points, 3)`, which carry the data of the mesh at rest.
         view : risorius.refine.View, optional
-            Where it is looked at from, for the criterion `silhouette`.
+            The viewpoint, for the criterion `silhouette`.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Tables of files, read into typed records: the types of fields are the rules for a file.
+"""Reads tables of files into typed records: the types of fields are the rules for a file.
 
 A record is a frozen dataclass that is also a `Record`; its fields are the keys of a table. pydantic
 checks; an error is reported in one line:
@@ -157,7 +157,7 @@ class Kinds:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """A choice by this key, which the records do not have."""
+        """A choice by the key `kind`, which is not a field of the records."""
         return core_schema.tagged_union_schema(
             {
                 OWN + name: core_schema.no_info_before_validator_function(
@@ -206,7 +206,7 @@ def read(
 
 
 def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
-    """A record of the allowed entries of a table, and a line for each other entry.
+    """Return a record of the allowed entries of a table, and a message for each other entry.
 
     It is for settings: a file from another version of the program, or written by hand, must not
     stop this one. Every field has a default; an entry is a key of the table, or of a table within
@@ -269,7 +269,7 @@ def _keys(record: type[Any]) -> tuple[str, ...]:
 
 
 def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> Any:
-    """A table with unknown keys moved into the rest's; raises ValueError if there is no rest."""
+    """A table with unknown keys moved to the `Rest` field; ValueError without such a field."""
     if not isinstance(table, Mapping):
         return table
     plain = [key for key in known if not key.startswith(OWN)]

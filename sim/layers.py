@@ -92,7 +92,7 @@ NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
 def share_of_whole(value: float, whole: float) -> float:
-    """A value divided by that of the control in its `share_of`, 0 .. 1; 0 where that value is 0."""
+    """Return a value divided by the value `whole` of its `share_of` control, 0 .. 1; 0 for 0."""
     return min(value, max(whole, 0.0)) / max(whole, LEAST_WHOLE)
 
 

@@ -73,8 +73,8 @@ class Similarity:
 class ThinPlateSpline:
     """The smoothest deformation of space that takes some points to others, or near them.
 
-    A sum of distances from the points and a linear map, as `scipy.interpolate.RBFInterpolator` has
-    it with the kernel "linear"; that takes several times as long.
+    It is a sum of distances from the points and a linear map. `scipy.interpolate.RBFInterpolator`
+    with the kernel "linear" gives the same, but takes several times as long.
     """
 
     def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:

@@ -26,11 +26,10 @@ PARTS = 5  # parts of each hair; [mm]
 class Brows:
     """Both brows of a person.
 
-    thickness: that of the thickest place [mm].
-    inner: from the middle of the face to the inner end [mm].
-    rise, fall: from the inner end up to the peak, and from the peak down to the tail [mm].
-    peak: from the middle of the face to the peak [mm].
-    density: that of hairs, relative to the usual one. unruly: how far hairs stand out of line, 0 to
+    thickness: thickness at the thickest place [mm]. inner: from the middle of the face to the inner
+    end [mm]. rise, fall: from the inner end up to the peak, and from the peak down to the tail
+    [mm]. peak: from the middle of the face to the peak [mm]. density: density of hairs, relative to
+    the usual density. unruly: how far hairs stand out of line, 0 to
         1.
     seed: seed of single hairs.
     """

@@ -1,4 +1,4 @@
-"""Lines that are carved into a map of heights, texel by texel."""
+"""Carves lines into a height map, texel by texel."""
 
 from ..jit import njit
 from .arrays import Floats32
@@ -13,7 +13,7 @@ def carve(
     heights: Floats32,
     furrows: Floats32,
 ) -> None:
-    """Lower heights where lines run, and write how deep furrows are there.
+    """Lower heights along lines, and write the depths of the furrows.
 
     texels: where each lies across lines, at which sample along them, the length of one unit
     across [mm], and how far lines show there, 0 to 1, shape (h, w, 4). courses, depths: where lines

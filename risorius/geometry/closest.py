@@ -1,4 +1,4 @@
-"""The exact closest points of a triangle mesh, or the closest ones that face the same way.
+"""Exact closest points on a triangle mesh, optionally only where it faces the same way.
 
 Triangles are sorted along a space-filling curve and put into boxes in pairs, pairs of pairs and so
 on. A search enters the nearer box first, and skips boxes farther than the nearest triangle so far.
@@ -38,7 +38,7 @@ class SurfacePoints:
     """Barycentric coordinates in it, shape (n, 3)."""
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
-        """Values of the mesh's vertices, (V,) or (V, k), at these places."""
+        """Interpolate values of the mesh's vertices, (V,) or (V, k), at these places."""
         wide = np.asarray(values, dtype=np.float64)[self.corners]
         carried: Floats64 = np.einsum("nc,nc...->n...", self.weights, wide)
         return carried
@@ -46,7 +46,7 @@ class SurfacePoints:
 
 @dataclass(frozen=True, eq=False)
 class MeshSearch:
-    """A mesh whose triangles are sorted and boxed, to be searched more than once."""
+    """A mesh with its triangles sorted into boxes, for repeated searches."""
 
     faces: npt.NDArray[np.integer]
     """Vertices of the triangles, shape (F, 3), at least one."""
@@ -92,8 +92,8 @@ def closest_points(
     """Find the closest place on a mesh, at least one of `faces` (F, 3), for `points`, shape (n, 3).
 
     `normals`: direction in which the surface should face there, shape (n, 3), zero for any
-    direction. A triangle that faces the other way counts as `wrong_side` farther away, so that
-    points of the lower lip find the lower lip even if it touches the upper one.
+    direction. For a triangle that faces the other way, `wrong_side` is added to the distance, so
+    that points of the lower lip find the lower lip even if it touches the upper lip.
     """
     return MeshSearch.of(vertices, faces).closest(points, normals, wrong_side)
 

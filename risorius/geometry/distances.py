@@ -7,7 +7,7 @@ from .arrays import Floats64
 
 
 def distances_between(points: Floats64, others: Floats64) -> Floats64:
-    """How far points (n, 3) are from others (m, 3), shape (n, m)."""
+    """Return the distances of points (n, 3) from others (m, 3), shape (n, m)."""
     found = np.empty((len(points), len(others)))
     _fill(np.ascontiguousarray(points), np.ascontiguousarray(others.T), found)
     return found
@@ -15,7 +15,7 @@ def distances_between(points: Floats64, others: Floats64) -> Floats64:
 
 @njit
 def _fill(points: Floats64, others: Floats64, found: Floats64) -> None:
-    """Fill distances; others: (3, m), by whose rows a processor takes several at once."""
+    """Fill distances; others: (3, m), because the compiler vectorises loops over these rows."""
     x = others[0]
     y = others[1]
     z = others[2]

@@ -8,7 +8,7 @@ from .arrays import Floats32, Floats64, Integers32
 
 
 class TextureGradients:
-    """Gradients of u and v at texture coordinates: means over the triangles around each, by area.
+    """Gradients of u and v at texture coordinates: area-weighted means over the triangles around.
 
     gradients = TextureGradients(faces, uv, face_uv)
     along_u_and_v = gradients.measure(positions)

@@ -1,6 +1,6 @@
 """Cross products of triangles, and normals and areas of vertices, in double precision.
 
-Refiners find normals in every frame by a kernel of their own, in single precision
+Refiners compute the normals of every frame by another kernel, in single precision
 (refine/mesh/normals.py).
 """
 
@@ -28,7 +28,7 @@ def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats
 
 
 def vertex_areas(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
-    """A third of the triangles around each vertex, shape (V,)."""
+    """Return a third of the area of the triangles around each vertex, shape (V,)."""
     face_areas = np.linalg.norm(cross_products(vertices, faces), axis=1) / 2.0
     shares = np.tile(face_areas / 3.0, 3)
     return np.asarray(np.bincount(faces.T.ravel(), shares, len(vertices)), np.float64)

@@ -1,4 +1,4 @@
-"""Polylines: the way along them, and points at even places."""
+"""Polylines: arc lengths, and evenly spaced points."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ from .arrays import Floats64
 
 
 def arc_lengths(points: Floats64) -> Floats64:
-    """The way along a polyline (n, k) to each of its points, shape (n,)."""
+    """Return the arc length of a polyline (n, k) up to each of its points, shape (n,)."""
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(lengths)])
 
 
 def evenly_spaced(points: Floats64, along: Floats64, count: int) -> Floats64:
-    """Points of a polyline (n, k) at even places from its start to its end, shape (count, k).
+    """Return evenly spaced points on a polyline (n, k) from start to end, shape (count, k).
 
-    `along`: the rising place of each of its points, shape (n,).
+    `along`: the parameter of each of its points, ascending, shape (n,).
     """
     places = np.linspace(0.0, along[-1], count)
     return np.stack([np.interp(places, along, column) for column in points.T], axis=1)

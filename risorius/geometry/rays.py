@@ -12,7 +12,7 @@ from .arrays import Flags, Floats64, Integers32, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
 
-PARALLEL = 1e-12  # below this a triangle is parallel to the line, and is not met
+PARALLEL = 1e-12  # below this a triangle counts as parallel to the line
 
 
 def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
@@ -38,7 +38,7 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
 
 @njit
 def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
-    """Which pairs of triangles cut through each other and have no common vertex, shape (k,).
+    """Flag pairs of triangles that intersect and have no common vertex, shape (k,).
 
     corners: shape (F, 3, 3). faces: numbers of their vertices, shape (F, 3). pairs: shape (k, 2).
     """
@@ -105,11 +105,11 @@ def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
 def exits(
     origin: Floats64, directions: Floats64, vertices: Floats64, faces: npt.NDArray[np.integer]
 ) -> tuple[npt.NDArray[np.intp], Floats64, Floats64]:
-    """Exits of rays from one point within a surface, from inside to outside.
+    """Find where rays from one point within a surface leave it.
 
     directions: unit vectors, shape (n, 3). vertices: shape (V, 3). faces: counter-clockwise seen
     from outside, shape (F, 3). Returns for each exit the number of its ray, the distance, and the
-    cosine between ray and normal; a ray has an exit for each layer of surface.
+    cosine between ray and normal; a ray may leave several layers of the surface.
     """
     normals = cross_products(vertices, faces)
     corners = vertices[faces] - origin

@@ -1,4 +1,4 @@
-"""Arrays for callers, who must not write them."""
+"""Read-only arrays for callers."""
 
 import dataclasses
 from typing import TypeVar
@@ -10,10 +10,10 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    """A view of an array that cannot be written; the array itself if it is read-only.
+    """Return a read-only view of an array; the array itself if it is read-only.
 
-    Compiled code uses vertex numbers that were checked once. If one were changed afterwards, it
-    could read beyond the end of an array.
+    Compiled code uses vertex numbers that were checked once. If a caller changed a number
+    afterwards, compiled code could read beyond the end of an array.
     """
     if not array.flags.writeable:
         return array

@@ -11,10 +11,10 @@ def sides_of(faces: Integers) -> Integers:
 
 
 def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
-    """The different ones of pairs (n, 2) of numbers from 0, and each pair's place among them, (n,).
+    """Return the distinct rows of pairs (n, 2) of numbers from 0, and the index of each pair, (n,).
 
-    The different ones are sorted by the first number, then by the second, shape (k, 2). `np.unique`
-    of rows takes ten times as long.
+    The distinct pairs, shape (k, 2), are sorted by the first number, then by the second.
+    `np.unique` of rows takes ten times as long.
     """
     first, second = pairs.T.astype(np.int64)
     span = int(second.max(initial=0)) + 1

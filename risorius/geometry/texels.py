@@ -1,4 +1,4 @@
-"""The texels of a picture under triangles, and their places in these."""
+"""The texels of a picture that triangles cover, and their places in the triangles."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ class Texels:
     faces: Integers64
     """The triangle, shape (n,)."""
     weights: Floats64
-    """Barycentric coordinates in it, shape (n, 3); beside it those of a place on its border."""
+    """Barycentric coordinates in the triangle, shape (n, 3); of a place on its border for texels
+    beside it.
+    """
 
     @classmethod
     def within(cls, corners: Floats64, size: tuple[int, int], margin: float = 0.0) -> Texels:
@@ -38,7 +40,7 @@ class Texels:
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
         sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
-        most_tries = 60_000_000  # a normal layout needs two for each texel
+        most_tries = 60_000_000  # a normal layout needs two entries for each texel
         if sides.prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)

@@ -1,7 +1,7 @@
 """Colours of skin with hair, texel by texel, in two passes around numpy's exponential.
 
-Compiled, they read each map once. All steps are of single precision and in numpy's order, so the
-bits are those of the same lines on whole arrays.
+The compiled passes read each map once. All steps are in single precision and in numpy's order, so
+results equal those of numpy on whole arrays to the last bit.
 """
 
 from __future__ import annotations
