@@ -145,7 +145,7 @@ def tinted(picture: Image, factor: Sequence[float]) -> Image:
 
 
 def _shrunk(picture: Any) -> Image:
-    """A picture that Pillow has opened, as `decoded` returns it."""
+    """Return an opened Pillow picture in the form of `decoded`."""
     import PIL.Image
 
     picture.draft("RGB", (LARGEST, LARGEST))

@@ -13,11 +13,10 @@ Edge = tuple[int, int]
 
 
 def boundary_loops(faces: Faces) -> list[list[int]]:
-    """Closed rows of boundary vertices, in the direction of their faces, longest first.
+    """Return closed rows of boundary vertices, in the direction of their faces, longest first.
 
     At a vertex where holes meet, a row continues around the adjacent faces, and may return to the
-    vertex. Raises ValueError if two faces run along an edge in the same direction: that is no
-    surface.
+    vertex. Raises ValueError if two faces run along an edge in the same direction.
     """
     sides, number = different_pairs(sides_of(faces))
     if len(sides) < len(number):
@@ -48,7 +47,7 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
 
 
 def unique_points(points: Floats64) -> tuple[Integers64, Integers64]:
-    """The first of equal points (n, 3), in their order, and each point's number among them."""
+    """Distinct points of (n, 3), by first occurrence, and each point's number among these."""
     _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return first[order], np.argsort(order)[number.reshape(-1)]
@@ -113,9 +112,9 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
 
 
 def decimated(vertices: Floats64, faces: Faces, count: int) -> tuple[Floats64, Faces]:
-    """Other vertices and about `count` triangles; the edges of openings stay in place.
+    """Return a simplified mesh of about `count` triangles; the edges of openings stay in place.
 
-    A manifold mesh stays one: where every attempt pinches it, more triangles are left.
+    A manifold mesh stays manifold: if every attempt would pinch it, more triangles are left.
     """
     most_attempts = 8  # at one number of triangles
     while count < len(faces):
@@ -128,14 +127,14 @@ def decimated(vertices: Floats64, faces: Faces, count: int) -> tuple[Floats64, F
 
 
 def is_manifold(faces: Faces) -> bool:
-    """Whether one face lies at each edge, or two that run along it in opposite directions."""
+    """Whether each edge has one face, or two faces that run along it in opposite directions."""
     sides = sides_of(faces)
     both = np.bincount(different_pairs(np.sort(sides, axis=1))[1])
     return len(different_pairs(sides)[0]) == len(sides) and both.max(initial=0) <= 2
 
 
 def collapsed(vertices: Floats64, faces: Faces, count: int, attempt: int) -> tuple[Floats64, Faces]:
-    """Other vertices and about `count` triangles, more than two of which may meet at an edge.
+    """Return a simplified mesh of about `count` triangles, which may be non-manifold.
 
     By quadric error metrics (Garland, Heckbert 1997, "Surface simplification using quadric error
     metrics"), in a maintained library. It may pinch the surface; another `attempt` then has another

@@ -1,7 +1,7 @@
 """The user's files: read whole, but only regular files up to a limit.
 
 A path may lead to an endless pipe, to a device, or to gigabytes, and text may have any encoding.
-None of this may reach a reader that trusts its file.
+Readers in other libraries do not check for this, so these functions check first.
 """
 
 import codecs
@@ -23,7 +23,7 @@ _ASCII = bytes(code if code < 0x80 else ord("?") for code in range(256))
 
 
 def named(path: str | Path) -> str:
-    """The path as one line that any screen can show."""
+    """Return the path as one line of printable characters."""
     text = str(path)
     return text if text.isprintable() else ascii(text)[1:-1]
 

@@ -5,7 +5,7 @@ texture has a seam or the material changes, and opens the files that materials n
 keeps its number and its neighbours, and no other file is opened.
 
 Source: Wavefront Technologies, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
-Differs from it: free-form surfaces are left out, as is the weight w of a vertex.
+Differs from it: free-form surfaces are left out, and so is the weight w of a vertex.
 """
 
 from __future__ import annotations
@@ -126,8 +126,8 @@ def _unusable(number: int, line: bytes) -> AssetError:
 def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[int, int, int]]:
     """For each corner the numbers of its vertex, texture coordinates and normal; -1 for none.
 
-    counts: numbers of these so far. The file counts from 1, or back from the last one. Raises
-    ValueError for other numbers.
+    counts: how many of each the file has defined so far. The file counts from 1, or from the last
+    defined entry backwards. Raises ValueError for other numbers.
     """
     if len(fields) < 3:
         raise ValueError
@@ -277,9 +277,9 @@ def _parted(line: str) -> tuple[str, str]:
 
 
 def joined_lines(content: bytes) -> bytes:
-    """The text of `text_with_names`, where a backslash at a line's end joins the next line.
+    """Text of `text_with_names`, with each line that ends in a backslash joined to the next.
 
-    A remark ends with its line: a path in it may end in a backslash.
+    Comment lines are never joined, because a path in a comment may end in a backslash.
     """
     remarks = re.compile(rb"(?m)^[ \t]*#[^\n]*")
     text = remarks.sub(b"", text_with_names(content))

@@ -42,7 +42,7 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
 
 
 def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
-    """Our samples. is_on_bone: whether the jaw's points are the rig's, not those of the outline."""
+    """Read our samples. is_on_bone: whether jaw points are the rig's landmarks, not the outline."""
     found = []
     for number in numbers:
         sample = faces[number]

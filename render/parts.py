@@ -169,7 +169,7 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """Same part with the number of the background, whose edges are already smooth."""
+        """The same part, numbered as background, because its edges are already smooth."""
         return self._replace(number=0)
 
     @property

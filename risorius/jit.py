@@ -37,7 +37,7 @@ from numba.core import event
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-"""Options of all kernels: other threads may run meanwhile, and 1 / 0 is infinite, as in numpy."""
+"""Options of all kernels: they release the GIL, and 1 / 0 is infinite, as in numpy."""
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()

@@ -92,7 +92,7 @@ NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
 def share_of_whole(value: float, whole: float) -> float:
-    """Return a value divided by the value `whole` of its `share_of` control, 0 .. 1; 0 for 0."""
+    """Return `value` / `whole`, 0 .. 1; it is 0 if `whole`, the `share_of` control, is 0."""
     return min(value, max(whole, 0.0)) / max(whole, LEAST_WHOLE)
 
 

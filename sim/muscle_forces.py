@@ -248,7 +248,7 @@ def _carries(
 def _attachments(
     parts: list[tuple[Floats64, Floats64]], least: Floats64, empty: Floats64
 ) -> Attachments:
-    """Concatenate the vertices of each part (weight, value) above a limit."""
+    """Concatenate the vertices with enough weight of all parts (weight, value)."""
     on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(

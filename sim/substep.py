@@ -60,7 +60,7 @@ def parts(whole: float, longest: float) -> int:
 
 @njit
 def advance(state: State, skin: SkinModel, tick: Tick) -> None:
-    """Advance a face by one tick in substeps: the list of all forces and constraints."""
+    """Advance a face by one tick in substeps; the code lists all forces and constraints."""
     damp(state, skin, tick.h)
     lip_passes = 7  # averaged projections need several passes where lips are pressed hard
     for _ in range(tick.substeps):
