@@ -1,4 +1,4 @@
-"""The front edges of eyelids: paths along the mesh near the lids' landmarks.
+"""The front edges of eyelids, and the measures of each lid by distance from its edge.
 
 Source: own.
 """
@@ -9,8 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.arrays import Floats64, Integers32
+from ..geometry.arrays import Flags, Floats64, Integers32
+from .landmarks import polyline_distance, smoothstep
+from .rig import Eyes
 from .surface import SkinSurface
+
+COLUMNS = 41  # places along the opening where its height is known
 
 
 class LidAxes(NamedTuple):
@@ -67,3 +71,48 @@ def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Flo
     found[np.setdiff1d(upper, lower)] = 1.0
     found[np.setdiff1d(lower, upper)] = -1.0
     return found
+
+
+class OneLid(NamedTuple):
+    """One lid of an eye: by vertex, shape (V,), or by column of the opening, shape (COLUMNS,)."""
+
+    weight: Floats64  # (V,) share of the margin's turn
+    fold: Floats64  # (V,) share of the turn of the open lid
+    slide: Floats64  # (V,) share of the slide
+    near: Flags  # (V,) near the margin
+    distance: Floats64  # (V,) mm from the front edge
+    front: Floats64  # (COLUMNS,) rad, angle to the front edge
+    depth: Floats64  # (COLUMNS,) mm from the centre of the eyeball to the front edge
+
+
+def one_lid(
+    eyes: Eyes,
+    surface: SkinSurface,
+    axes: LidAxes,
+    edge_vertices: Integers32,
+    on_lid: Flags,
+    fold_ends: tuple[float, float],
+) -> OneLid:
+    """Measure one lid along its front edge. fold_ends: mm, plateau and reach."""
+    edge = surface.positions[edge_vertices]
+    distance = polyline_distance(surface.positions, edge)
+    column = axes.column(surface.positions)
+    edge = edge[np.argsort(axes.column(edge), kind="stable")]
+    places = axes.column(edge)
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
+    slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
+    return OneLid(
+        weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
+        fold=on_lid * _share(distance, *fold_ends),
+        slide=on_lid * _share(distance, 0.0, slide_reach * eyes.lid_reach),
+        distance=distance,
+        near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
+        front=np.interp(where, places, axes.angle(edge)),
+        depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
+    )
+
+
+def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
+    """Return Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
+    return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))

@@ -26,13 +26,14 @@ Angles from the visible lid margins.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
-from .landmarks import EYE_LANDMARKS, polyline_distance, smoothstep
-from .lid_edges import LidAxes, front_edges, side_with_edges
+from .landmarks import EYE_LANDMARKS, smoothstep
+from .lid_edges import COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
 from .lip_lid_sides import lid_side
@@ -42,7 +43,6 @@ from .state import State
 from .surface import SkinSurface
 
 Smooth = Callable[[Floats64], Floats64]
-COLUMNS = 41  # places along the opening where its height is known
 
 
 class Lids(NamedTuple):
@@ -71,14 +71,57 @@ def place_lids(
 
     names: of all controls in their order, to find the lid muscles' activations.
     """
-    eyes = rig.eyes
-    axes = [_up_and_forward(landmarks, ball) for ball in eyeballs]
     evened_area = 10.0  # mm2
     even = surface.smoother(evened_area)
-    parts = [
-        _one_eye(eyes, surface, landmarks, ball, *axis, even)
-        for ball, axis in zip(eyeballs, axes, strict=True)
-    ]
+    parts = _lifted_eyes(rig, surface, landmarks, eyeballs, even)
+    vertices, hold = _lid_vertices(rig, surface, landmarks, parts, eyeballs)
+    return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
+
+
+def _lifted_eyes(
+    rig: Rig,
+    surface: SkinSurface,
+    landmarks: Floats64,
+    eyeballs: tuple[Eyeball, ...],
+    even: Smooth,
+) -> list[_OneEye]:
+    """The lids of each eye, in front of the eyeballs when shut.
+
+    A flat triangle that spans half an eyeball must be lifted far, and a lid of such triangles is a
+    tent. There the lower lids come up farther, so that both lids span less.
+    """
+    good_lift = 2.0  # mm that nobody sees
+    lift_per_meeting = 4.0  # mm of less lift for which the lids may meet at another height, in full
+    own_meeting = rig.eyes.blink_meeting
+    found: list[_OneEye] = []
+    least = np.inf
+    for meeting in np.arange(own_meeting, 0.5 + 1e-6, 0.1).tolist():
+        eyes = replace(rig.eyes, blink_meeting=meeting)
+        parts = [_one_eye(eyes, surface, landmarks, ball, even) for ball in eyeballs]
+        highest = 0.0
+        for number, (part, ball) in enumerate(zip(parts, eyeballs, strict=True)):
+            lids = _lid_vertices(rig, surface, landmarks, [part], (ball,))[0]
+            lift = _lift(lids, surface, ball, meeting > own_meeting)
+            parts[number] = part._replace(sink=part.sink - lift)
+            highest = max(highest, lift.max(initial=0.0))
+        cost = max(highest, good_lift) + lift_per_meeting * (meeting - own_meeting)
+        if cost < least:
+            found, least = parts, cost
+        if highest <= good_lift:
+            break
+    return found
+
+
+def _lid_vertices(
+    rig: Rig,
+    surface: SkinSurface,
+    landmarks: Floats64,
+    parts: list[_OneEye],
+    eyeballs: tuple[Eyeball, ...],
+) -> tuple[LidVertices, Floats64]:
+    """The lids of some eyes for the kernel, and the extra stiffness of their plates (L,)."""
+    eyes = rig.eyes
+    axes = [_up_and_forward(landmarks, ball) for ball in eyeballs]
     joined = _OneEye(*(np.concatenate(column) for column in zip(*parts, strict=True)))
     areas = rig.tissue.stiffness_scale * surface.areas[joined.vertex]
     hold = eyes.lid_stiffness * areas * joined.weight
@@ -108,8 +151,7 @@ def place_lids(
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
     )
-    vertices = vertices._replace(sink=joined.sink - _lift(vertices, surface, eyeballs))
-    return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
+    return vertices, hold
 
 
 def gaze_share_of(radius: float) -> float:
@@ -122,19 +164,19 @@ def gaze_share_of(radius: float) -> float:
     return min(1.0, most_radius / radius)
 
 
-def _lift(lids: LidVertices, surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> Floats64:
-    """Return how far each lid vertex must be lifted [mm], shape (L,), when all eyes are closed."""
+def _lift(lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool) -> Floats64:
+    """Return how far each lid vertex of a closed eye must be lifted [mm], shape (L,).
+
+    both: whether the lower lid is lifted, too.
+    """
     state = State.at_rest(surface)
-    closed = np.zeros((len(eyeballs), len(LIDS)))
+    closed = np.zeros((1, len(LIDS)))
     closed[:, 0] = 1.0
-    turn_lids(state, surface.positions, lids, closed, np.zeros((len(eyeballs), 2)))
-    lift = np.zeros(len(lids.vertex))
-    for eye, ball in enumerate(eyeballs):
-        moves = np.zeros(surface.vertex_count)
-        moves[lids.vertex[lids.upper & (lids.eye == eye) & (lids.closing != 0.0)]] = 1.0
-        found = lift_off(state.carried, surface.positions, surface.faces, moves, ball)
-        lift = np.where(lids.eye == eye, found[lids.vertex], lift)
-    return lift
+    turn_lids(state, surface.positions, lids, closed, np.zeros((1, 2)))
+    moves = np.zeros(surface.vertex_count)
+    moves[lids.vertex[(lids.upper | both) & (lids.closing != 0.0)]] = 1.0
+    lift = lift_off(state.carried, surface.positions, surface.faces, moves, ball)
+    return lift[lids.vertex]
 
 
 class _OneEye(NamedTuple):
@@ -167,14 +209,14 @@ def _one_eye(
     surface: SkinSurface,
     landmarks: Floats64,
     ball: Eyeball,
-    up: Floats64,
-    forward: Floats64,
     even: Smooth,
 ) -> _OneEye:
     """Find the lids of one eye, and the turn of each lid vertex."""
     x = surface.positions
     outline = landmarks[list(EYE_LANDMARKS[ball.side])]
-    axes = LidAxes(ball.centre, up, forward, outline[0], outline[3] - outline[0])
+    axes = LidAxes(
+        ball.centre, *_up_and_forward(landmarks, ball), outline[0], outline[3] - outline[0]
+    )
     column = axes.column(x)
     angle = axes.angle(x)
     edges = front_edges(surface, axes, outline)
@@ -223,7 +265,7 @@ def _one_eye(
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
 
 
-def _proud_sink(upper: _OneLid, lower: _OneLid, column: Floats64, full: Floats64) -> Floats64:
+def _proud_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
     """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
     where = np.linspace(0.0, 1.0, COLUMNS)
@@ -252,17 +294,17 @@ def _both_lids(
     axes: LidAxes,
     edges: tuple[Integers32, Integers32],
     side: Floats64,
-) -> tuple[_OneLid, _OneLid]:
+) -> tuple[OneLid, OneLid]:
     """The upper and the lower lid; edges: vertices of their front edges."""
     upper_edge, lower_edge = edges
     upper_ends = (eyes.fold_plateau, eyes.fold_reach)
     lower_ends = (eyes.lid_plateau, eyes.lid_reach)
-    upper = _one_lid(eyes, surface, axes, upper_edge, side > 0.0, upper_ends)
-    lower = _one_lid(eyes, surface, axes, lower_edge, side < 0.0, lower_ends)
+    upper = one_lid(eyes, surface, axes, upper_edge, side > 0.0, upper_ends)
+    lower = one_lid(eyes, surface, axes, lower_edge, side < 0.0, lower_ends)
     return upper, lower
 
 
-def _margin(lid: _OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
+def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
     """The margin of a lid itself, up to its front edge, shape (V,)."""
     edge_turn = 1e-3  # rad
     where = np.linspace(0.0, 1.0, COLUMNS)
@@ -304,56 +346,11 @@ def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
     return joined
 
 
-class _OneLid(NamedTuple):
-    """One lid of an eye: by vertex, shape (V,), or by column of the opening, shape (COLUMNS,)."""
-
-    weight: Floats64  # (V,) share of the margin's turn
-    fold: Floats64  # (V,) share of the turn of the open lid
-    slide: Floats64  # (V,) share of the slide
-    near: Flags  # (V,) near the margin
-    distance: Floats64  # (V,) mm from the front edge
-    front: Floats64  # (COLUMNS,) rad, angle to the front edge
-    depth: Floats64  # (COLUMNS,) mm from the centre of the eyeball to the front edge
-
-
-def _one_lid(
-    eyes: Eyes,
-    surface: SkinSurface,
-    axes: LidAxes,
-    edge_vertices: Integers32,
-    on_lid: Flags,
-    fold_ends: tuple[float, float],
-) -> _OneLid:
-    """Measure one lid along its front edge. fold_ends: mm, plateau and reach."""
-    edge = surface.positions[edge_vertices]
-    distance = polyline_distance(surface.positions, edge)
-    column = axes.column(surface.positions)
-    edge = edge[np.argsort(axes.column(edge), kind="stable")]
-    places = axes.column(edge)
-    where = np.linspace(0.0, 1.0, COLUMNS)
-    margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
-    slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
-    return _OneLid(
-        weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
-        fold=on_lid * _share(distance, *fold_ends),
-        slide=on_lid * _share(distance, 0.0, slide_reach * eyes.lid_reach),
-        distance=distance,
-        near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
-        front=np.interp(where, places, axes.angle(edge)),
-        depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
-    )
-
-
 def _smoothed(height: Floats64) -> Floats64:
     """Opening by column, smoothed at the ends so that skin off the margin does not crease."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
     return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])
-
-
-def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
-    """Return Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
-    return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))
 
 
 def _lid_muscles(

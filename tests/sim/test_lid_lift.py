@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 from numpy.linalg import norm
+from scipy.spatial import cKDTree
 
+from risorius.assets.fitting import fit_head
+from risorius.assets.meshes import Mesh
+from risorius.assets.topology import decimated
+from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
+from tests.heads import UserHead
 
 CLEARANCE = 0.3  # [mm]
 BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
@@ -81,3 +87,22 @@ def test_the_drawn_eyeball_fits_the_lifted_lids(head):
         points = tiny.reshape(-1, 3)
         lift = lift_off(points, points + 2.0 * ABOVE, faces, np.ones(len(points)), ball)
         assert lift.reshape(-1, 3)[:, 0] == pytest.approx(2.0 * CLEARANCE, abs=0.12)
+
+
+def test_shut_lids_of_a_large_coarse_eye_are_no_tents(head, tmp_path):
+    """Where few triangles span a large eyeball both lids turn, and neither stands far before it.
+
+    The upper lid alone would be lifted by 3 mm on this head, and by 7 mm on another.
+    """
+    marks = head.vertices[head.landmarks]
+    vertices = head.vertices
+    for eye in (slice(36, 42), slice(42, 48)):
+        away = vertices - marks[eye].mean(axis=0)
+        near = np.exp(-((norm(away[:, :2], axis=1)[:, None] / 22.0) ** 2))
+        vertices = vertices + near * away * [0.7, 1.1, 0.0]
+    points, faces = decimated(vertices, head.faces, 1600)
+    numbers = cKDTree(points).query(vertices[head.landmarks])[1]
+    mesh, marked = UserHead(Mesh(points, faces), numbers).write(tmp_path)
+    lids = build_face_model(fit_head(mesh, marked)).lids.vertices
+    assert lids.sink.min() > -2.6
+    assert lids.closing[~lids.upper].max() > 0.2
