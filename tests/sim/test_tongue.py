@@ -5,6 +5,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import sim
+from risorius.assets.identities import make_person, sample_identity
 from tests.assets.checks import part, winding_numbers
 from tests.sim.poses import FRAME, settled_displacement, without
 
@@ -157,3 +158,17 @@ def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
     bare.controls.pose({"tongue_out": 1.0})
     bare.step(FRAME)
     assert bare.anatomy.tongue() is None
+
+
+@pytest.mark.parametrize("number", [5, 6])
+@pytest.mark.parametrize(("control", "least"), [("tongueOut", 25.0), ("viseme_TH", 8.0)])
+def test_the_tongue_of_a_small_mouth_comes_out(number, control, least):
+    """The jaw opens far enough for it: these persons' tongues stayed behind their teeth.
+
+    least: how far the tip comes forward, with the way down over the lip [mm].
+    """
+    simulation = sim.create(make_person(sample_identity(number)))
+    before = tongue_now(simulation)
+    tip = before[:, 2].argmax()
+    settled_displacement(simulation, {control: 1.0})
+    assert np.linalg.norm(tongue_now(simulation)[tip] - before[tip]) > least
