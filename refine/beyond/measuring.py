@@ -8,8 +8,8 @@ Each has two thresholds, above which an edge is split once and twice. Its measur
 all criteria can be blended (blending.py) and combined. The criterion `silhouette` is defined here.
 It measures how far the surface turns along an edge near the outline:
 
-    (1 - n_a . n_b) x facing facing is 1 where the line of sight grazes the edge, 0 at
-    SILHOUETTE_BAND; the turn is limited (see `Silhouette`)
+    (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 at
+                                  SILHOUETTE_BAND; the turn is limited (see `Silhouette`)
 """
 
 import reprlib
