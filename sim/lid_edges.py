@@ -114,5 +114,5 @@ def one_lid(
 
 
 def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
-    """Return Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
+    """Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
     return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))
