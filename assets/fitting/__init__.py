@@ -1,10 +1,10 @@
-"""Any head: fit the built-in head's landmarks, rig and organs to a user's mesh.
+"""Fit the built-in head's landmarks, rig and organs to a user's mesh.
 
     head = assets.fitting.fit_head("anna.obj", "anna_landmarks.json")
     simulation = sim.create(head)
 
-The 68 iBug landmarks are needed, unless the topology is known (topologies.py). docs/own_head.md is
-the user's page. Start reading at head.py.
+The 68 iBug landmarks are needed, unless the topology is known (topologies.py). The page for users
+is docs/own_head.md. Start reading at head.py.
 """
 
 from .head import FittedHead, fit, fit_head

@@ -1,6 +1,6 @@
-"""Balls in a user's file: eyeballs among its pieces, and sockets that are shells of eyeballs.
+"""Eyeballs in a user's file: pieces that are balls, and sockets that enclose a ball.
 
-A head of few triangles has neither; then its lids alone give the place of an eyeball (organs.py).
+A head of few triangles has neither. Its lids alone then give the place of the eyeball (organs.py).
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import numpy as np
 
 from ...geometry.arrays import Floats64
 
-FEWEST = 4  # vertices of an eyeball: fewer are strands and cards
+FEWEST = 4  # least vertices of an eyeball; pieces with fewer are strands or cards of hair
 
 
 def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
-    """Whether a piece (n, 3) is an eyeball near there, or a layer of one: an iris, a cornea."""
+    """Whether a piece (n, 3) is an eyeball near `centre`, or one of its layers (iris, cornea)."""
     if len(points) < FEWEST:
         return False
     off = np.linalg.norm(points - centre, axis=1)
@@ -30,7 +30,7 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
 
 
 def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
-    """The sphere that fits points (n, 3) best, if they are a ball near there; else the given one.
+    """Fit a sphere to points (n, 3); return the given one if they are no ball near it.
 
     Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
     """
@@ -51,10 +51,10 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
 def ball_of_pieces(
     pieces: Sequence[Floats64], centre: Floats64, radius: float, lids: Floats64
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the largest eyeball among pieces, else None.
+    """Centre and radius [mm] of the largest eyeball among pieces; None without any.
 
-    centre, radius: an estimate of it. lids: landmarks of the eye, shape (6, 3); a ball that stands
-    out of them is no eyeball.
+    centre, radius: an estimate. lids: landmarks of the eye, shape (6, 3); a ball that protrudes
+    between them is no eyeball.
     """
     found = None
     for points in pieces:
@@ -62,7 +62,7 @@ def ball_of_pieces(
             continue
         middle, size = sphere_of(points, centre, radius)
         is_fitted = middle is not centre
-        most_out = 1.5  # [mm] that a lid's edge may lie in the ball
+        most_out = 1.5  # [mm] by which the edge of a lid may lie inside the ball
         is_behind = np.linalg.norm(lids - middle, axis=1).min() > size - most_out
         if is_fitted and is_behind and (found is None or size > found[1]):
             found = middle, size
@@ -72,12 +72,12 @@ def ball_of_pieces(
 def ball_of_socket(
     skin: Floats64, outward: Floats64, centre: Floats64, radius: float
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the ball that lies in a shell behind the lids, else None.
+    """Centre and radius [mm] of the ball in a socket behind the lids; None without a socket.
 
-    skin: its vertices, shape (V, 3). outward: cosine of each normal with the way from `centre`,
-    shape (V,). centre, radius: an estimate of the ball.
+    skin: vertices, shape (V, 3). outward: cosine of the angle between each normal and the direction
+    from `centre`, shape (V,). centre, radius: an estimate of the ball.
     """
-    most_radii = 2.0  # radii of the ball: largest shell
+    most_radii = 2.0  # largest distance of the socket, in radii of the ball
     facing = -0.6  # cosine below which skin faces the ball
     away = np.linalg.norm(skin - centre, axis=1)
     shell = skin[(away < most_radii * radius) & (outward < facing)]
@@ -87,6 +87,6 @@ def ball_of_socket(
     middle, _ = sphere_of(shell, centre, radius)
     if middle is centre:
         return None
-    thickness = 0.3  # [mm] of air about the ball
+    thickness = 0.3  # [mm] between the ball and its socket
     nearest = np.quantile(np.linalg.norm(shell - middle, axis=1), 0.1)
     return middle, float(nearest) - thickness

@@ -1,4 +1,4 @@
-"""The place of a head by its 68 landmarks: a similarity to the face space, or an error."""
+"""The similarity from a head to the face space, by its 68 landmarks; or an error."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..model import Head
 from .landmark_file import COUNT, groups_in_disorder
 from .warp import Similarity
 
-ORIENTING = slice(17, COUNT)  # without the jaw line, whose places differ most between annotators
+ORIENTING = slice(17, COUNT)  # without the jaw line, on which annotators differ most
 
 
 def placed(points: Floats64, known: Head) -> Similarity:
-    """The similarity to millimetres and the face space; AssetError if this is no face."""
+    """The similarity to the face space [mm]; AssetError if the points are no face."""
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
-    least_size = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
+    least_size = 1e-9  # between the outermost landmarks: smaller squares lack digits
     if extent < least_size:
         raise AssetError(
             f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
@@ -31,7 +31,7 @@ def placed(points: Floats64, known: Head) -> Similarity:
     disordered = groups_in_disorder(similarity.points(points), template)
     farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
     is_far = off[ORIENTING].mean() > farthest_from_a_face
-    most_disordered = 3  # groups: more in disorder mean landmarks without any order
+    most_disordered = 3  # groups; if more are in disorder, no landmark is in its place
     if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
@@ -50,16 +50,16 @@ def placed(points: Floats64, known: Head) -> Similarity:
 
 
 def is_face(points: Floats64) -> bool:
-    """Whether landmarks [unit of the mesh] are those of a face, in their order."""
+    """Whether landmarks [unit of the mesh] form a face and are in order."""
     with contextlib.suppress(AssetError):
         return bool(placed(points, load("head")))
     return False
 
 
 def _check_different(points: Floats64, template: Floats64) -> None:
-    """Raise AssetError if landmarks [mm] that are far apart on any face coincide."""
+    """Raise AssetError if two landmarks [mm] coincide that are far apart on any face."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
-    # Landmarks that are this far apart on the built-in head cannot coincide: a muscle between them
+    # Landmarks this far apart on the built-in head must not coincide, because a muscle between them
     # needs a length.
     least_built_in_distance = 30.0  # [mm]
     a, b = np.unravel_index(

@@ -1,7 +1,7 @@
-"""Triangles that fill a mouth or an eye, such as those of masks; both must be open.
+"""Triangles that fill the mouth or the eyes of a mesh, as in masks; they are removed.
 
 A filling lies inside the landmarks of an opening, and all its vertices are on the opening's edge:
-it is one polygon, cut into triangles. These are left out of the skin, and their vertices stay.
+it is one polygon, cut into triangles. The skin loses these triangles and keeps their vertices.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..meshes import Mesh
 from .face_place import placed
 from .mesh_validation import pieces_of
 
-# Landmarks around each opening, in two chains from corner to corner.
+# Landmarks around each opening: one chain above and one below, from corner to corner.
 OPENINGS = {
     "mouth": ((60, 61, 62, 63, 64), (64, 65, 66, 67, 60)),
     "right eye": ((36, 37, 38, 39), (39, 40, 41, 36)),
@@ -29,7 +29,7 @@ OPENINGS = {
 
 @dataclass(frozen=True)
 class Filling:
-    """The triangles of a mesh that fill openings, and names of these openings."""
+    """The triangles of a mesh that fill openings, and the names of the openings."""
 
     triangles: Integers
     openings: tuple[str, ...]
@@ -44,7 +44,7 @@ class Filling:
 
 
 def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
-    """All triangles that fill the mouth or an eye of a mesh; None if none do.
+    """All triangles that fill the mouth or an eye of a mesh; None without any.
 
     numbers: vertices at the landmarks, shape (68,). landmarks: their places [unit of the mesh],
     shape (68, 3).
@@ -77,8 +77,9 @@ def _smooth(points: Floats64) -> Floats64:
 def _filling(
     vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
 ) -> Integers:
-    """The triangles that fill an opening; none if they are not a polygon with all corners on its
-    edge. All is in the face space [mm], whose z axis points to the viewer.
+    """The triangles that fill an opening, if they form a polygon with all corners on its edge.
+
+    Lengths are in the face space [mm], whose z axis points to the viewer.
 
     around: landmarks of the opening, (n, 3). upper, lower: curves through them, from corner to
     corner and back, (m, 3) each.
@@ -94,10 +95,10 @@ def _filling(
     near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
     used = np.unique(faces[near])
     ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
-    for share in (1.0, 0.9, 0.8):  # of the curve's size: folds of skin may hang into it
+    for share in (1.0, 0.9, 0.8):  # of the curve's size: folds may hang into the opening
         shrunk = centre + share * (edge - centre)
         inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
-        # Also triangles between the curve and a side of the polygon, which lie outside the curve.
+        # Add triangles outside the curve, between it and a side of the polygon.
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
         if _is_polygon(faces[found]):
@@ -111,7 +112,7 @@ def _is_polygon(faces: Integers32) -> bool:
     """Whether triangles form one polygon with all corners on its edge."""
     sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
     border = sides[uses == 1]
-    count = len(faces) + 2  # corners and sides of a polygon of so many triangles
+    count = len(faces) + 2  # corners and sides of a polygon with this many triangles
     corner_counts = (len(border), len(np.unique(border)), len(np.unique(faces)))
     return len(faces) > 0 and corner_counts == (count, count, count)
 

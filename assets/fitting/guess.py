@@ -1,13 +1,13 @@
-"""A guess of the 68 landmarks of a head, from the few that a user has placed.
+"""Guess the 68 landmarks of a head from the few that a user has placed.
 
-    first points  ->  similarity to the built-in head  ->  the likeliest person
-                  ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
+    first points  ->  similarity to the built-in head  ->  most similar person (likely_face.py)
+                  ->  its face fitted to the mesh, stiff at first  ->  its landmarks on the mesh
 
-The person's face is laid on the mesh like a cloth: each of its points goes to the nearest place
-that faces the same way. A warp follows these points, and bends more in each step.
+Each point of the person's face moves to the nearest place of the mesh that faces the same way. A
+warp follows these points, and bends more in each step.
 
-Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
-to step; here that of a smoothing thin-plate warp).
+Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (the stiffness falls from step to
+step; here a smoothing thin-plate warp has it).
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from .likely_face import FARTHEST_MATCH, LikelyFace
 from .mesh_validation import pieces_of
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
-# Outer corners of the eyes, tip of the nose, corners of the mouth: easy to find for everybody, and
-# far apart in every direction.
+# Outer corners of the eyes, tip of the nose, corners of the mouth: everybody finds them, and they
+# are far apart in every direction.
 FIRST = (36, 45, 30, 48, 54)
 
-Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
+Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> its place (3,) [unit of the mesh]
 
 
 def guess(mesh: Mesh, known: Known) -> Floats64:
     """Guess all 68 landmarks on a mesh [its unit], shape (68, 3).
 
-    known: at least those of `FIRST`; they stay in place. Raises AssetError if they are not those of
-    a face.
+    known: placed landmarks, at least those in `FIRST`; they stay in place. Raises AssetError if
+    they form no face.
     """
     head = load("head")
     similarity = placing(known)
@@ -48,7 +48,7 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     given = similarity.points(np.array([known[number] for number in numbers]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
-    # Both the landmarks and the face around them are laid on the mesh.
+    # The landmarks and the face around them are fitted to the mesh.
     chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
     face = LikelyFace(head, vertices, faces, numbers, given, chosen)
     face.fit()
@@ -57,7 +57,7 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     known_points = own[head.landmarks[numbers]]
     is_free = ~np.isin(np.arange(len(chosen)), numbers)
     laid = own
-    stiffnesses = (1e3, 300.0, 100.0)  # [mm] of the warp, from step to step
+    stiffnesses = (1e3, 300.0, 100.0)  # [mm] smoothing of the warp in each step
     for stiffness in stiffnesses:
         feet = _feet(laid, head, chosen, face.mesh, faces)
         is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < FARTHEST_MATCH)
@@ -70,13 +70,13 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
 
 
 def placing(known: Known) -> Similarity:
-    """The similarity to the face space [mm] by known landmarks, at least four of them.
+    """The similarity to the face space [mm], by four or more known landmarks.
 
-    Raises AssetError if they are not those of a face, or those of its mirror image.
+    Raises AssetError if they form no face, or the mirror image of a face.
     """
     similarity, off = _laid(known)
     right = "right is the subject's own, on your left where the face looks at you"
-    most_mean_distance = 14.0  # [mm] of the first points: more is no face
+    most_mean_distance = 14.0  # [mm] from the first points to the built-in head's
     if off.mean() > most_mean_distance:
         right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
         for pair, (a, b) in right_and_left.items():
@@ -93,7 +93,7 @@ def placing(known: Known) -> Similarity:
 
 
 def _laid(known: Known) -> tuple[Similarity, Floats64]:
-    """What brings known landmarks nearest to the built-in ones, and how far off each is [mm]."""
+    """The similarity from known landmarks to the built-in ones, and the error of each [mm]."""
     head = load("head")
     numbers = sorted(known)
     own = head.vertices[head.landmarks[numbers]]
@@ -105,9 +105,9 @@ def _laid(known: Known) -> tuple[Similarity, Floats64]:
 
 
 def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
-    """The triangles of the skin around some points of a face, facing outward, in face space.
+    """The skin's triangles around some points in face space, turned to face outward.
 
-    The skin is the piece that most of the points lie on: eyeballs, teeth and hair are left out.
+    The skin is the piece of the mesh under most points; eyeballs, teeth and hair are left out.
     """
     middles = vertices[faces].mean(axis=1)
     under = scipy.spatial.cKDTree(middles).query(given)[1]
@@ -115,7 +115,7 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
     is_skin = piece == np.bincount(piece[under]).argmax()
     if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
         faces = faces[:, ::-1]
-    face_radii = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
+    face_radii = np.array([60.0, 90.0, 120.0])  # [mm] reach of a face around the first points
     low = given.min(axis=0) - face_radii
     high = given.max(axis=0) + face_radii
     is_near = ((middles > low) & (middles < high)).all(axis=1)
@@ -124,18 +124,18 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
 
 def _around_landmarks(head: Head) -> Integers32:
     """Some vertices near the landmarks of a head, except the landmarks themselves."""
-    reach = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
+    reach = 30.0  # [mm] around landmarks: the part of the built-in face that is fitted to the mesh
     near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
     near[head.landmarks] = False
     every = np.flatnonzero(near).astype(np.int32)
-    most_points = 300  # of that part (chosen; more take longer and find the same)
+    most_points = 300  # of this part (chosen: more take longer, with the same result)
     return every[:: max(len(every) // most_points, 1)]
 
 
 def _feet(
     laid: Floats64, head: Head, chosen: Integers32, vertices: Floats64, faces: Integers32
 ) -> Floats64:
-    """Places of some vertices of the laid head on a mesh, where it faces the same way."""
+    """Nearest places on a mesh for some vertices of the warped head, facing the same way."""
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
 
@@ -148,6 +148,6 @@ def centred(vertices: Floats64, radius: float) -> Similarity:
 
 
 def axes_turned() -> list[Floats64]:
-    """The 24 rotations that take axes to axes, the identity first."""
+    """The 24 rotations that map the coordinate axes to each other, the identity first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))

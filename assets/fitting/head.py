@@ -1,12 +1,12 @@
-"""Fit the built-in head's anatomy to another head by 68 landmarks.
+"""Fit the built-in head's anatomy to a user's head by 68 landmarks.
 
     landmarks  ->  similarity to millimetres and the face space
                ->  warp of the built-in head  ->  depth of bone, texture
                                               ->  share of the mandible
                                               ->  eyes, teeth, tongue, mouth
 
-Muscles need no fitting: the rig is written in landmarks (sim/rig.py). The mandible's share of the
-skin is carried over, so that a chin follows its bone as stiffly as the built-in one.
+Muscles need no fitting, because the rig names landmarks (sim/rig.py). Each skin vertex takes the
+built-in head's share of the mandible's motion, so a chin follows its bone equally stiffly.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop". Differs from it: no mesh is fitted to
 scanned points; the user's mesh itself is animated.
@@ -68,18 +68,18 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 
 @dataclass(frozen=True)
 class FittedHead(simplifying.SimulatedHead):
-    """A user's head, with all that `sim.create` and a renderer read.
+    """A user's head, with all data for `sim.create` and a renderer.
 
-    The attributes are those of `Head`, in its millimetres and axes. Pieces without a landmark (the
-    mesh's own eyeballs and teeth) were left out.
+    It has the attributes of `Head`, in the face space [mm]. Pieces without a landmark (the mesh's
+    own eyeballs and teeth) are left out.
 
-    to_millimetres: takes the file's coordinates to these.
-    file_vertices: numbers of the vertices, or of the nearest ones, in the file, shape (V,), int32.
-    notes: changes of the mesh that its owner should know, a line each.
-    called: its name or number, "" if it has none.
-    simplified: the mesh that is simulated instead, if this one has too many triangles; else None.
-    files: those of the mesh and its landmarks, if it was read from files.
-    lip_cut: the cut of the mesh, if the file's lips are sealed; else None.
+    to_millimetres: from the file's coordinates to the face space.
+    file_vertices: the file's number of each vertex, or of the nearest one, shape (V,), int32.
+    notes: changes of the mesh that its owner should know, one line for each.
+    called: name or number of the head, "" without one.
+    simplified: the simulated mesh, if the head has too many triangles; else None.
+    files: paths of the mesh and the landmark file; empty if the head was not read from files.
+    lip_cut: the cut between the lips, if the file's lips are joined; else None.
     """
 
     face_uv: Integers32
@@ -97,16 +97,16 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> Floats32 | None:
-        """How its skin fades, (V, 2), see `neck_fade`; None: there is no edge at the neck."""
+        """Where the skin fades at the neck, (V, 2), see `neck_fade`; None without a neck's edge."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:
     """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
 
-    landmarks: None for a mesh whose vertices are known by their numbers, see topologies.py. Raises
-    AssetError, one line that names the file, where a file is missing, broken or unusable; its
-    subclass UnfinishedError if landmarks are missing, or those of a known head do not fit.
+    landmarks: None for a mesh of a known topology, see topologies.py. Raises AssetError if a file
+    is missing, broken or unusable; its one line names the file. Raises the subclass UnfinishedError
+    if landmarks are missing, or if those of a known topology do not fit.
     """
     path = Path(mesh)
     found = read_mesh(path)
@@ -129,9 +129,9 @@ Marks = tuple[Integers32, Floats64 | None]  # landmarks, see `read_landmarks`
 
 
 def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]) -> FittedHead:
-    """Fit a mesh. Before, filled openings are opened, and lips that skin joins are parted.
+    """Fit a mesh, after opening filled openings and parting joined lips.
 
-    marks_of: finds the landmarks of a mesh with the same vertices and other triangles.
+    marks_of: returns the landmarks of a mesh with the same vertices and other triangles.
     """
     numbers, points = marks
     places = mesh.vertices[numbers] if points is None else points
@@ -163,7 +163,7 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
 
 
 def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
-    """Fit a mesh with known landmarks; its errors are those of `fit_head`."""
+    """Fit a mesh of a known topology; raises the errors of `fit_head`."""
     known = recognised(mesh)
     if known is None:
         raise UnfinishedError(
@@ -172,7 +172,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
 
     def marks_of(parted: Mesh) -> Marks:
-        """The known landmarks; those of parted lips each on their own lip."""
+        """The known landmarks; those of parted lips are on the upper and the lower lip."""
         numbers = known.landmarks
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
@@ -192,8 +192,8 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
 def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
-    landmarks: vertex numbers, shape (68,); points: their exact places [unit of the mesh], shape
-    (68, 3); None: those vertices. Raises AssetError for an unusable mesh.
+    landmarks: vertex numbers, shape (68,). points: exact places [unit of the mesh], shape (68, 3);
+    None for the places of the vertices. Raises AssetError for an unusable mesh.
     """
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
@@ -247,7 +247,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
 
 
 class _Jaw(NamedTuple):
-    """The axis of a head's jaw, and the rig with its angle."""
+    """The axis of a head's jaw, and the rig with the angle by which the jaw opens."""
 
     axis: Floats64 | None  # (2, 3) [mm]; None for a head without ears
     rig: dict[str, Any]
@@ -268,12 +268,12 @@ def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list
 
 
 class _Carried(NamedTuple):
-    """Data that the built-in head gives to a skin of V vertices."""
+    """Data of the built-in head, carried over to a skin of V vertices."""
 
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
     uv: Floats32  # (V, 2) in the built-in picture
-    across: Floats32  # (V, 3) of wrinkles
+    across: Floats32  # (V, 3) direction across wrinkles
     bone_depth: Floats64  # (V,) [mm]
     mandible_weight: Floats64  # (V,)
 
@@ -281,7 +281,7 @@ class _Carried(NamedTuple):
 def _carried_over(
     known: Head, skin: SkinPiece, target: Floats64, pieces: tuple[Floats64, ...], jaw: _Jaw
 ) -> _Carried:
-    """Warp the built-in head to a skin [mm] whose 68 landmarks lie at `target`, and read it off."""
+    """Warp the built-in head to a skin [mm] with landmarks at `target`; return its data there."""
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
@@ -291,7 +291,7 @@ def _carried_over(
     eyes = place_eyes(known, fitted)
     axis = warp.points(known.jaw_axis) if jaw.axis is None else jaw.axis
     parts = place_parts(known, fitted, warp, eyes, opened_jaws(axis, jaw.rig))
-    neck_part = "neck"  # the shirt of the built-in head, which has its shoulders
+    neck_part = "neck"  # bone of the built-in shirt, which fits only the built-in shoulders
     return _Carried(
         eyes=eyes,
         # Landmarks do not give the edge of a lid exactly enough for lashes and tears.
@@ -306,7 +306,7 @@ def _carried_over(
 def _simulated(
     known: Head, coarse: SkinPiece, carried: _Carried, jaw: _Jaw
 ) -> simplifying.SimulatedHead:
-    """The simulated head, which has a simplified mesh."""
+    """The simulated head on a simplified mesh."""
     return simplifying.SimulatedHead(
         vertices=coarse.vertices,
         faces=coarse.faces,
@@ -323,7 +323,7 @@ def _simulated(
 
 
 def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried:
-    """The same data for the skin whose simplified mesh is `coarse`."""
+    """The same data for the dense skin `fine`, whose simplified mesh is `coarse`."""
     normals = vertex_normals(fine.vertices, fine.faces)
     nearest = nearest_on(fine.vertices, normals, coarse.vertices, coarse.faces)
     return carried._replace(
@@ -335,7 +335,7 @@ def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried
 
 
 def _sound(skin: SkinPiece) -> SkinPiece:
-    """The skin [mm] facing outward, without a bag behind its lips; AssetError if unusable."""
+    """The skin [mm], facing outward and without a bag behind its lips; AssetError if unusable."""
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
@@ -349,10 +349,10 @@ def _painted(
     skin: SkinPiece,
     built_in: Layout,
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
-    """The picture of the skin, its layout, and maps in this layout (see `maps_in`).
+    """Layout and picture of the skin, and maps in this layout (see `maps_in`).
 
-    own: the file's picture of the skin, None if it has none. built_in: layout of the skin in
-    the built-in picture.
+    own: the file's picture of the skin and its layout, None without a picture. built_in: layout of
+    the skin in the built-in picture.
     """
     known = load("head")
     if own is not None:
@@ -369,7 +369,7 @@ def _painted(
 
 
 def _check_size(skin: SkinPiece) -> None:
-    """Raise AssetError for a vertex [mm] far away from the face."""
+    """Raise AssetError if a vertex [mm] lies far away from the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
     most_distance = 10_000.0  # [mm] from the middle of the face: more is a mistake
     if off.max() > most_distance:
