@@ -1,1 +1,1 @@
-"""Benchmarks: each module measures one thing and makes numbers and text; commands print them."""
+"""Benchmarks: each module measures one property and returns numbers and text for its command."""

@@ -1,8 +1,8 @@
-"""Avatars of heads: a check of their files' vertices, and errors of sums of shapes.
+"""Check the vertices in files of avatars, and measure the errors of sums of shapes.
 
-Heads are the built-in one and a made person, and by options MakeHuman's base mesh and a scan. Each
-head becomes an avatar, as by `risorius rig`, and its file is read again. Its landmarks are also
-guessed from five of them.
+The heads are the built-in head and a made person, and optionally MakeHuman's base mesh and a scan.
+Each head becomes an avatar, as with `risorius rig`, and the avatar's file is read again. All 68
+landmarks of each head are also guessed from five true ones.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ PERSON = 7
 
 
 class HeadFile(NamedTuple):
-    """A file of a head, and the file of its landmarks."""
+    """The mesh file of a head, and the file of its landmarks."""
 
     name: str
     mesh: Path
@@ -50,9 +50,9 @@ class HeadFile(NamedTuple):
 class Row(NamedTuple):
     """One avatar.
 
-    vertices: number in the file, or in the skin without a file. in_place: number of these that the
-    avatar has under the same numbers. shapes: number of ARKit's names in Apple's order.
-    guess: that of its landmarks.
+    vertices: number in the head's file, or in its skin if it has no file. in_place: number of these
+    vertices that have the same index and position in the avatar. shapes: number of ARKit's names in
+    Apple's order. guess: the guess of the head's landmarks.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Row(NamedTuple):
 
 
 def makehuman(folder: Path) -> HeadFile:
-    """The head of MakeHuman's base mesh in a folder; UserError if it is missing."""
+    """MakeHuman's base mesh from a folder; UserError if it is missing."""
     head = HeadFile("MakeHuman hm08", folder / "base.obj", folder / "base.json")
     for path in (head.mesh, head.landmarks):
         if not path.is_file():
@@ -75,7 +75,7 @@ def makehuman(folder: Path) -> HeadFile:
 
 
 def scan(scans: Scans, folder: Path) -> HeadFile:
-    """The neutral face of a folder of scans, written into another folder as a mesh file."""
+    """Write the neutral face of scans into a folder, as a mesh file and a landmark file."""
     head = HeadFile("ICT-FaceKit", folder / "scan.obj", folder / "scan.json")
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in scans.mesh.vertices]
     lines += [f"f {a} {b} {c}" for a, b, c in scans.mesh.faces + 1]
@@ -88,7 +88,8 @@ def scan(scans: Scans, folder: Path) -> HeadFile:
 def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
     """Make an avatar of each head, one after the other.
 
-    folder: the one of MakeHuman's base mesh. reference: the one of scans. None leaves a head out.
+    folder: holds MakeHuman's base mesh. reference: holds scans. A head whose folder is None is left
+    out.
     """
     avatar_of(None, _request(), _quiet)  # compilation is not timed
     yield measured(None)
@@ -101,13 +102,13 @@ def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
 
 
 def measured(head: FittedHead | None, name: str = "built-in") -> Row:
-    """The avatar of the built-in head or a person."""
+    """Measure the avatar of the built-in head or a person."""
     begin = time.perf_counter()
     avatar = avatar_of(head, _request(), _quiet)
     content = avatar_glb(avatar, name)
     seconds = time.perf_counter() - begin
     points, names = mesh_called("skin", content)
-    # At seams of texture coordinates, copies of vertices follow.
+    # At seams of texture coordinates, a vertex is followed by its copies.
     is_copy = (np.diff(points, axis=0) == 0.0).all(axis=1)
     points = points[~np.append(False, is_copy)]
     scene = avatar.scene
@@ -117,7 +118,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
 
 
 def measured_file(head: HeadFile) -> Row:
-    """The avatar of a head of a file."""
+    """Measure the avatar of a head from a file."""
     begin = time.perf_counter()
     avatar = avatar_of(own_head(head.mesh, head.landmarks), _request(), _quiet)
     content = avatar_glb(avatar, head.name)
@@ -145,7 +146,7 @@ def _row(
 
 
 def in_place(own: Points, points: Points) -> int:
-    """How many of a file's vertices (V, 3) an avatar's mesh (n, 3) has with the same numbers."""
+    """Number of a file's vertices (V, 3) that have the same index in an avatar's mesh (n, 3)."""
     count = min(len(own), len(points))
     same = own[:count].astype(np.float32) == points[:count].astype(np.float32)
     return int(same.all(axis=1).sum())
@@ -168,11 +169,11 @@ def _request() -> RigRequest:
 
 
 def _quiet(_: str) -> None:
-    """Print no line about a head."""
+    """Ignore progress lines."""
 
 
 def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
-    """The text to print. guesses: those of other heads."""
+    """The text to print. guesses: landmark guesses of further heads."""
     files = [
         (row.name, row.vertices, row.in_place, row.shapes, row.megabytes, row.seconds)
         for row in rows
@@ -199,7 +200,7 @@ def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
 
 
 def targets(rows: Sequence[Row]) -> list[Target]:
-    """The targets: all vertices in their places, and all names."""
+    """The targets: all vertices in place, and all names."""
     found = []
     for row in rows:
         found.append(at_least(f"{row.name}, vertices in place", row.in_place, row.vertices))

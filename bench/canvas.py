@@ -1,4 +1,4 @@
-"""An offscreen surface for single meshes, and pictures arranged in rows."""
+"""Draw single meshes offscreen, and arrange pictures in rows."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Drawing:
 
 
 class Canvas:
-    """Draws the output of refiners, one picture at a time; a context manager."""
+    """A context manager that draws the output of refiners, one picture at a time."""
 
     def __init__(self, size: tuple[int, int], *, samples: int = 4) -> None:
         self.surface = render.open_offscreen(size, samples=samples)
@@ -51,7 +51,7 @@ class Canvas:
         self.surface.close()
 
     def mesh_of(self, refiner: refine.Refiner) -> DrawnMesh:
-        """The mesh of a refiner in lent buffers, the same at every call."""
+        """The refiner's mesh as drawn; every call for the same refiner reuses its buffers."""
         if refiner not in self._meshes:
             room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
             self._meshes[refiner] = DrawnMesh("", refiner, self.renderer.lend_stream(*room))
@@ -78,8 +78,8 @@ class Canvas:
         faces: npt.NDArray[np.integer],
         drawing: Drawing,
     ) -> Image:
-        """Draw a surface with known normals, which no refiner made; read back."""
-        position_and_normal = 6  # columns of a vertex without texture coordinates
+        """Draw a surface with given normals, without a refiner, and read back."""
+        position_and_normal = 6  # columns of a vertex that has no texture coordinates
         stream = self.renderer.lend_stream(len(positions), len(faces), position_and_normal)
         stream.vertices[:] = np.hstack([positions, normals])
         stream.triangles[:] = faces
@@ -88,7 +88,7 @@ class Canvas:
         return self.surface.read()
 
     def _draw(self, skin: render.Skin, drawing: Drawing) -> None:
-        """Draw a skin with the parts and lines of a drawing."""
+        """Draw a skin, and the parts and lines of a drawing."""
         view = render.CameraView(drawing.camera)
         parts = [render.PlacedPart.of(part, drawing.bones) for part in drawing.parts]
         lines = [] if drawing.lines is None else [drawing.lines]
@@ -97,7 +97,7 @@ class Canvas:
 
 @dataclass(frozen=True)
 class Shot:
-    """A picture of a mesh with this number of triangles, for comparisons."""
+    """A picture for comparisons, and the number of triangles in its mesh."""
 
     triangles: int
     image: Image
@@ -108,12 +108,12 @@ class Shot:
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 
     def rms(self, truth: Shot) -> float:
-        """Root mean square of this difference."""
+        """Root mean square difference from another picture [levels of 255]."""
         return float(np.sqrt((self.off(truth) ** 2).mean()))
 
 
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
-    """The parts of a scene without hair, which hides form."""
+    """The parts of a scene except hair, because hair hides the face's form."""
     return tuple(part for part in scene.parts if not part.name.startswith(HAIR))
 
 
@@ -123,7 +123,7 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
     _, first_image = first_cells[0]
     height, width = first_image.shape[:2]
     columns = max(len(cells) for _, cells in rows)
-    # Pages show it about 1000 pixels wide; captions then still have about 12 pixels.
+    # Pages show the table about 1000 pixels wide; its captions are then about 12 pixels high.
     size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
     title = round(2.0 * size)
     caption_height = round(1.7 * size)

@@ -1,7 +1,7 @@
-"""The report of `risorius bench capture`: frames a second of a film.
+"""The report of `risorius bench capture`: the number of film frames made per second.
 
-The film is the face's script, unrefined and refined, side by side. While the face is still, it
-shows its last picture again. `bench window` reports the time of each stage of a frame, by the same
+The film plays the face's script, unrefined and refined side by side. While the face is still, the
+last picture is repeated. `bench window` reports the time of each stage of a frame in the same
 pipeline.
 """
 

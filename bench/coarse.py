@@ -1,13 +1,13 @@
-"""How near the coarse head's refined surface comes to the built-in head, and flips that help.
+"""Measure the refined coarse head against the built-in head, and search for better edge flips.
 
-The built-in head holds some poses. Vertices of the coarse layout (assets/coarse.toml) are taken
-from it, so that nothing but the layout's triangles makes a difference. Every edge is split twice,
-and the normals of the new triangles are compared with those of the built-in head nearby: shading
-shows normals.
+The built-in head holds some poses. The coarse layout (assets/coarse.toml) uses the built-in head's
+own vertices, so only the choice of triangles makes a difference. Every edge is split twice, and the
+normals of the new triangles are compared with those of the built-in head nearby: shading depends on
+normals.
 
-A flip replaces the edge between two triangles by their other diagonal. `search` flips one edge
-after another in a random order, and keeps each flip that lowers the angle of the whole face (after
-Lawson 1977, "Software for C1 surface interpolation", who flips edges by another measure).
+A flip replaces the edge between two triangles by the other diagonal of their quadrilateral.
+`search` tries edges in a random order, and keeps each flip that lowers the angle over the whole
+face. Edge flips are from Lawson 1977, "Software for C1 surface interpolation"; the measure is ours.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ LEAST_GAIN = 0.005  # degrees
 
 
 class Layout(NamedTuple):
-    """The left half of the coarse head: triangles, shape (F, 3), and the group of each."""
+    """The left half of the coarse head: triangles, shape (F, 3), and the group of each triangle."""
 
     triangles: Integers32
     groups: npt.NDArray[np.str_]
@@ -66,7 +66,7 @@ class Surface(NamedTuple):
 
 
 def layout() -> Layout:
-    """The layout of assets/coarse.toml, in vertices of the coarse head."""
+    """The layout of assets/coarse.toml, with indices of the coarse head's vertices."""
     head = coarse_head()
     table_of_groups = read_toml(LAYOUT_FILE)["triangles"]
     triangles = np.searchsorted(head.file_vertices, np.vstack([*table_of_groups.values()]))
@@ -98,7 +98,8 @@ class Comparison:
         self._surfaces = surfaces()
 
     def angles(self, tried: Layout, scheme: str = "cubic") -> Mapping[str, float]:
-        """The RMS angle [degrees] of each group, weighted by area; "face": of all FREE_GROUPS."""
+        """The RMS angle [degrees] of each group, weighted by area; "face" is for all
+        FREE_GROUPS."""
         head = self._head
         faces = np.vstack([tried.triangles, head.mirror[tried.triangles][:, ::-1]])
         edge_count = len(refine.create("kahler", faces, head.vertices).edges)
@@ -121,13 +122,13 @@ class Comparison:
 def _angles_and_areas(
     mesh: refine.RefinedMesh, is_chosen: Flags, surface: Surface
 ) -> tuple[Floats64, Floats64]:
-    """Angles [degrees] to the nearest points that face the same way, and areas of triangles."""
+    """Angle [degrees] of each triangle's normal to that of the nearest point, and areas."""
     triangles = mesh.triangles[is_chosen].astype(np.int64)
     middles = mesh.positions[triangles].mean(axis=1)
     normals = unit_vectors(mesh.normals[triangles].mean(axis=1).astype(float))
     distances, nearest = surface.tree.query(middles, k=6)
     cosines = np.einsum("nkc,nc->nk", surface.normals[nearest], normals)
-    least_cosine = 0.2  # of points on the same side, not on the inner side of a lip or a lid
+    least_cosine = 0.2  # leaves out points on the inner side of a lip or a lid
     distances = np.where(cosines > least_cosine, distances, np.inf)
     chosen = np.take_along_axis(cosines, distances.argmin(axis=1)[:, None], axis=1)[:, 0]
     areas = 0.5 * np.linalg.norm(cross_products(mesh.positions.astype(float), triangles), axis=1)
@@ -163,7 +164,7 @@ def search(
 
 
 def flipped(start: Layout, first: int, second: int) -> Layout | None:
-    """The layout with the other diagonal at the edge between two vertices; None if none may be."""
+    """The layout with the edge between two vertices flipped; None if it must not be flipped."""
     triangles = start.triangles
     beside = np.flatnonzero((triangles == first).any(axis=1) & (triangles == second).any(axis=1))
     if len(beside) != 2 or not np.isin(start.groups[beside], FREE_GROUPS).all():
@@ -181,7 +182,8 @@ def flipped(start: Layout, first: int, second: int) -> Layout | None:
 
 
 def _is_sound(tried: Layout, start: Layout, head: CoarseHead, outward: Floats64) -> bool:
-    """Whether the flipped triangles are no slivers and look outward, and neighbours are few."""
+    """Whether flipped triangles are wide and face outward, and no vertex has too many
+    neighbours."""
     is_new = (tried.triangles != start.triangles).any(axis=1)
     triangles = tried.triangles[is_new]
     smallest = np.degrees(trimesh.triangles.angles(head.vertices[triangles])).min()

@@ -66,7 +66,7 @@ def bench() -> None:
     help="Time pairs of frames: one by kahler, one by a kept Loop matrix.",
 )
 def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: str | None) -> None:
-    """Time refinement on the face and on meshes of up to a million triangles."""
+    """Time refinement of the face and of meshes with up to a million triangles."""
     from . import matrices, refine, threads
 
     if pairs is not None:
@@ -94,7 +94,7 @@ def bench_embedding() -> None:
 @bench.command("coarse")
 @click.option("--flips", is_flag=True, help="Print the edges of its layout whose flips help.")
 def bench_coarse(flips: bool) -> None:
-    """Measure how near the refined coarse head comes to the form of the built-in head."""
+    """Measure the difference in form between the refined coarse head and the built-in head."""
     from . import coarse
 
     comparison = coarse.Comparison()
@@ -113,7 +113,7 @@ def bench_coarse(flips: bool) -> None:
     help="Measure only this expression. The option may be repeated.",
 )
 def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
-    """Measure the distance of every scheme from a dense face, and from its picture.
+    """Measure the difference of every scheme from a dense face, in distance and in pictures.
 
     The face is the built-in head, or with --reference a scan.
     """
@@ -143,9 +143,9 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
 def bench_rivals(reference: Path | None, seconds: float) -> None:
     """Compare refinement with other libraries: errors and times.
 
-    All refine a sphere, the plane, the built-in head, and with --reference a scan. Errors are
-    distances from the true surface. One line names each library that is not installed; pip install
-    '.[rivals]' installs all.
+    Every library refines a sphere, the plane, the built-in head, and with --reference a scan.
+    Errors are distances from the true surface. A line is printed for each library that is not
+    installed; pip install '.[rivals]' installs all.
     """
     from . import rivals, subjects
 
@@ -167,7 +167,7 @@ def bench_rivals(reference: Path | None, seconds: float) -> None:
 @bench.command("motion")
 @needed_reference
 def bench_motion(reference: Path) -> None:
-    """Compare simulated with scanned skin motion, shape by shape."""
+    """Compare the simulated motion of skin with scanned motion, shape by shape."""
     from . import motion
 
     found = motion.measure(reference)
@@ -180,7 +180,7 @@ def bench_motion(reference: Path) -> None:
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     """Measure avatars: places of vertices, sums of shapes, guessed landmarks.
 
-    Heads are the built-in one, a person, and those of the folders of both options.
+    The heads are the built-in head, a person, and the heads in the folders of both options.
     """
     from . import avatar, guesses
 
@@ -215,7 +215,7 @@ def bench_persons(count: int) -> None:
     "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
 )
 def bench_human(reference: Path, head_file: Path | None) -> None:
-    """Measure how human the head's form is, by the persons of a reference."""
+    """Measure the distance of the head's form from the persons of a reference."""
     from . import human
 
     found = human.measure(reference, head_file)
@@ -262,8 +262,8 @@ def bench_seen(model: Path) -> None:
 def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
     """Compare a detector's 68 points with the labels of a data set.
 
-    `risorius dataset` made the data set FOLDER. Nothing is measured if the detector's library is
-    not installed; one line reports it.
+    FOLDER is a data set made by `risorius dataset`. If the detector's library is not installed, a
+    line is printed and nothing is measured.
     """
     from . import landmarks
 
@@ -307,7 +307,7 @@ def bench_gaps(mixtures: int) -> None:
 def bench_window(
     size: tuple[int, int], seconds: float, head: Path | None, landmarks: Path | None
 ) -> None:
-    """Time the window while a smile plays, and at rest; needs a screen."""
+    """Time the window while a smile plays, and while nothing happens; needs a screen."""
     from risorius.app.scenes import own_head
 
     from . import window

@@ -1,10 +1,10 @@
-"""Distance of a fine mesh, carried by a coarse one, from its true place.
+"""Measure the error of a fine mesh that is moved by a coarse mesh.
 
 Surfaces with a formula are bent by maps with a formula, so the true place of every fine vertex is
-known. The fine mesh lies on the surface, the coarse one has its vertices on it. `refine.Embedding`
-is compared with the two usual ways to draw fine meshes on coarse simulations: a place on the flat
-triangle that was nearest at rest, without an offset, and with an offset in the triangle's own axes.
-All three use the same coarse triangles.
+known. The vertices of both meshes lie on the surface at rest. `refine.Embedding` is compared with
+two usual ways to bind a fine mesh to a coarse simulation. Both attach each point to the flat
+triangle that is nearest at rest: the first at the triangle itself, the second with an offset in the
+triangle's own axes. All three methods use the same coarse triangles.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ ROUNDS = 20  # rounds of timing a frame
 
 
 class Row(NamedTuple):
-    """The error of three ways to carry a fine mesh, root mean square [lengths of the surface]."""
+    """The RMS errors of three ways to move a fine mesh [units of the surface]."""
 
     surface: str
     map: str
@@ -53,7 +53,7 @@ def sheet(cells: int) -> Surface:
 
 
 def sphere(levels: int) -> Surface:
-    """A sphere of radius 1, of nearly equal triangles."""
+    """A sphere of radius 1 with nearly equal triangles."""
     ball = trimesh.creation.icosphere(levels)
     return np.array(ball.vertices), np.array(ball.faces, dtype=np.int32)
 
@@ -71,7 +71,7 @@ def tube(around: int, along: int) -> Surface:
 
 
 def rolled(points: Points) -> Points:
-    """Roll x up around an axis 1.5 below: a plane becomes a cylinder."""
+    """Roll a plane along x into a cylinder, whose axis lies 1.5 below the plane."""
     radius = 1.5 + points[:, 2]
     angle = points[:, 0] / 1.5
     return np.stack([radius * np.sin(angle), points[:, 1], radius * np.cos(angle) - 1.5], axis=1)
@@ -98,7 +98,7 @@ def stretched(points: Points) -> Points:
 
 
 def swollen(points: Points) -> Points:
-    """Make thickness one and a half times as large."""
+    """Make a tube one and a half times as thick."""
     return points * [1.0, 1.5, 1.5]
 
 
@@ -133,7 +133,7 @@ class FlatBinding:
 
 
 def measure() -> list[Row]:
-    """Carry the fine mesh of every surface by every map."""
+    """Move the fine mesh of every surface by every map, and measure the errors."""
     rows = []
     for name, (rest, faces), (fine, _), maps in CASES:
         ours = refine.Embedding(faces, rest, fine)
@@ -181,7 +181,7 @@ def report(rows: list[Row]) -> str:
 
 
 def targets(rows: list[Row]) -> list[Target]:
-    """The targets: three times nearer than flat binding with an offset, if the surface bends."""
+    """The targets: where the surface bends, a third of the error of flat binding with an offset."""
     least = min(row.with_offset / row.ours for row in rows)
     return [at_least("flat binding with offset by ours", least, 3.0)]
 

@@ -1,17 +1,17 @@
-"""A test of closed lips, closing lids and whole skin.
+"""Search for gaps between shut lips or lids, inverted triangles and deep contacts.
 
 The benchmark sets each row of every layer to full strength, and then hundreds of random mixtures of
-muscles, and lets the built-in head settle in each pose. It counts inverted triangles: those turned
-by more than a right angle against the skin around them. It measures how deep skin sits in the other
-lip, an eyeball or the teeth.
+muscles, and lets the built-in head settle in each pose. It counts inverted triangles, which are
+turned by more than a right angle against the skin around them. It measures the depth of skin inside
+the other lip, an eyeball or the teeth.
 
 For action units, and expressions in which the mouth or an eye is shut, it also reports two gaps:
 the widest slit between lips that no muscle opens, and the greatest visible height of a shut
-eyeball, or of the space past it. The views cover the whole front, 60 degrees to either side and 40
-up and down. Both the mesh and the refined mesh are measured, because smoothing thins a folded lip a
-little; the worse of the two counts. Gaps are measured by lines of sight, not by distances between
-vertices: a gap without a line of sight does not count, and a gap may lie between two touching
-vertices.
+eyeball, or of the open space beside the eyeball. The views cover the whole front: 60 degrees to
+either side, and 40 up and down. The mesh and the refined mesh are both measured, because smoothing
+thins a folded lip a little; the larger gap counts. Gaps are measured by lines of sight, not by
+distances between vertices: a gap without a line of sight does not count, and a gap may lie between
+two touching vertices.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Triangles = npt.NDArray[Any]
 LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
 YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
 PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
-VIEWS = tuple(  # the whole front, as far as cameras turn
+VIEWS = tuple(  # the whole range of the cameras
     (yaw, pitch)
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
@@ -82,7 +82,8 @@ def _gaps(
     """The slit between shut lips, and the visible height of a shut eye, in a pose [mm]."""
     sums = simulation.controls.sums
     moved = {control for control, value in sums.items() if value != 0.0}
-    is_turned = moved and all(control.startswith("head_") for control in moved)  # and nothing else
+    # Only the turn of the head is set.
+    is_turned = moved and all(control.startswith("head_") for control in moved)
     layer = "Action units"
     mouth_shut = (
         "sadness",
@@ -94,14 +95,14 @@ def _gaps(
         "viseme_sil",
         "viseme_PP",
     )
-    eyes_shut = ("yawn",)  # besides those above
+    eyes_shut = ("yawn",)  # with an open mouth
     if is_turned or name not in (*simulation.controls.layers[layer], *mouth_shut, *eyes_shut):
         return None, None
     # FACS: these part the lips; all others leave the mouth shut.
     lip_parting = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
     is_shut = name.removesuffix("_left").removesuffix("_right") not in lip_parting + eyes_shut
     landmarks = simulation.positions[head.landmarks]
-    shut_value = 0.99  # of the muscle that closes a lid
+    shut_value = 0.99  # least activation of a shut eye
     closing_muscle = "orbicularis_oculi_palpebral_upper"
     shut = [side for side in ("right", "left") if sums[f"{closing_muscle}_{side}"] >= shut_value]
     slits = []
@@ -118,14 +119,14 @@ def _gaps(
 def _values(
     simulation: sim.Simulation, mixtures: int, generator: np.random.Generator
 ) -> Iterator[tuple[str, dict[str, float]]]:
-    """Name and values of every action unit, expression and so on, then of random mixtures."""
+    """Name and values of every row of every layer, then of random mixtures."""
     controls = simulation.controls
     for names_of_layer in controls.layers.values():
         yield from ((name, {name: 1.0}) for name in names_of_layer)
     # The pose of the head turns all triangles equally, so it is left out.
     limits = {n: controls.limits[n] for n in controls.lowest if not n.startswith("head_")}
     names = np.array(list(limits))
-    most_controls = 8  # in a mixture
+    most_controls = 8  # in one mixture
     for number in range(mixtures):
         chosen = generator.choice(
             names, size=generator.integers(2, most_controls + 1), replace=False
@@ -137,7 +138,8 @@ def _values(
 def meshes_of(
     simulation: sim.Simulation, refiner: refine.Refiner
 ) -> dict[str, tuple[Floats64, Triangles]]:
-    """Positions [mm] and triangles of the simulated face ("static") and the "refined" one."""
+    """Positions [mm] and triangles of the simulated mesh ("static") and the refined mesh
+    ("refined")."""
     drawn = refiner.refine(simulation.positions)
     return {
         "static": (simulation.positions, simulation.faces),
@@ -148,7 +150,7 @@ def meshes_of(
 def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
     """Greatest height [mm] of a slit between the lips that is visible in any of VIEWS.
 
-    landmarks: the 68 points as they lie now, (68, 3) [mm].
+    landmarks: the 68 points in this pose, (68, 3) [mm].
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
     mouth_radius = 60.0  # mm around the mouth's middle in which skin may cover it
@@ -178,11 +180,11 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
 def lid_gaps(
     positions: Floats64, triangles: Triangles, landmarks: Floats64, eyeballs: Mapping[str, Floats64]
 ) -> dict[str, float]:
-    """Greatest height [mm] of each eyeball, or the space past it, visible in any of VIEWS.
+    """Greatest height [mm] of each eyeball, or of open space beside it, visible in any of VIEWS.
 
-    A place is visible if no skin is in front of it, between the lids or through them: the cornea
-    stands out of the ball and may pierce a lid. `landmarks`: the present 68 (68, 3); `eyeballs`:
-    see `eyeballs_of`. The result is by the eye's side.
+    A place is visible if no skin is in front of it. It may be visible between the lids, or where
+    the cornea pierces a lid. `landmarks`: the 68 points in this pose, (68, 3) [mm]; `eyeballs`: see
+    `eyeballs_of`. The keys of the result are the sides of the eyes.
     """
     turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
@@ -199,7 +201,7 @@ def lid_gaps(
 def _lid_gap(near: Floats64, ends: Floats64, ball: Floats64) -> float:
     """Greatest height [mm] without skin between the corners of an eye (2, 3), along z.
 
-    A gap with skin above and below it counts.
+    Only a gap with skin above and below it counts.
     """
     near = near[to_viewer(near)]
     left, right = np.sort(ends[:, 0])
@@ -210,10 +212,10 @@ def _lid_gap(near: Floats64, ends: Floats64, ball: Floats64) -> float:
     heights = np.arange(middle - lid_window, middle + lid_window, lid_step)
     widest = 0
     lid_columns = 23  # planes across an eye
-    lid_end = 1.5  # [mm] beside the corners of an eye, which are not tested
+    lid_end = 1.5  # [mm] near the corners of an eye that are not tested
     for x in np.linspace(left + lid_end, right - lid_end, lid_columns):
         covered = _front(near, x, heights) >= np.maximum(_front(ball, x, heights), deepest)
-        skin = np.flatnonzero(covered)  # the head may end beyond the outermost
+        skin = np.flatnonzero(covered)  # in the outermost planes there may be no skin
         if len(skin):
             widest = max(widest, int((~covered[skin[0] : skin[-1]]).sum()))
     return lid_step * widest
@@ -245,12 +247,12 @@ def inverted_count(rest: Floats64, now: Floats64, faces: Triangles) -> int:
     before = cross_products(rest, faces)
     after = cross_products(now, faces)
     count = 0
-    compared_radius = 12.0  # mm around a triangle: skin for the compared mean turn
+    compared_radius = 12.0  # mm around a triangle: the skin here gives the expected turn
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         corners = faces[face]
         middle = rest[corners].mean(axis=0)
         away = np.linalg.norm(rest - middle, axis=1)
-        reach = max(compared_radius, 2.0 * away[corners].max())  # never the triangle alone
+        reach = max(compared_radius, 2.0 * away[corners].max())  # beyond the triangle
         near = away < reach
         around_before = rest[near] - rest[near].mean(axis=0)
         around_now = now[near] - now[near].mean(axis=0)
@@ -261,7 +263,7 @@ def inverted_count(rest: Floats64, now: Floats64, faces: Triangles) -> int:
 
 
 def _worst(poses: Sequence[Pose], column: str) -> tuple[float, str]:
-    """The greatest value of a column, and the pose that has it."""
+    """The greatest value of a column, and the name of its pose."""
     values = [(getattr(pose, column), pose.name) for pose in poses]
     return max((value for value in values if value[0] is not None), key=lambda pair: pair[0])
 
@@ -286,7 +288,7 @@ def report(poses: Sequence[Pose]) -> str:
 
 
 def targets(poses: Sequence[Pose]) -> list[Target]:
-    """The targets of skin and contacts; a triangle may turn over in a wink or a yawn."""
+    """The targets of skin and contacts; a few triangles may be inverted, as in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
     most = LARGEST_FAULTS.items()
     most_torn = 2.0  # [% of poses]

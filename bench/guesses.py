@@ -1,4 +1,4 @@
-"""Errors of landmarks that are guessed from five true points of a head."""
+"""Measure the errors of landmarks that are guessed from five true points of a head."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ PERSONS = (7, 63)
 class Guess(NamedTuple):
     """A head with guessed landmarks.
 
-    off: distance of each of the 68 from the true one, for outer eye corners 89 mm apart, shape
-    (68,).
+    off: distance of each guess from the true landmark, scaled so that the outer eye corners are 89
+    mm apart [mm], shape (68,).
     """
 
     name: str
@@ -31,10 +31,10 @@ class Guess(NamedTuple):
 
 
 def guessed(name: str, mesh: Mesh, true: Floats64) -> Guess:
-    """The guess for a mesh. true: its true landmarks [its unit], shape (68, 3)."""
+    """Guess the landmarks of a mesh. true: the true landmarks [the mesh's unit], shape (68, 3)."""
     found = guess(mesh, {number: true[number] for number in FIRST})
     right_corner, left_corner = true[[36, 45]]
-    apart = 89.0  # [mm], as of the built-in head
+    apart = 89.0  # [mm], the value of the built-in head
     scale = apart / np.linalg.norm(left_corner - right_corner)
     return Guess(name, scale * np.linalg.norm(found - true, axis=1))
 
@@ -52,7 +52,7 @@ def persons_turned() -> list[Guess]:
 
 
 def lines_of(guesses: Sequence[Guess]) -> list[str]:
-    """The table to print; median and worst are without the jaw line, groups have their means."""
+    """The table to print: median and worst error without the jaw, and each group's mean."""
     rows = []
     for each in guesses:
         own = each.off[GROUPS["jaw"].stop :]

@@ -1,14 +1,14 @@
-"""Likeness of a head to people: its distance from the nearest person of a reference, by region.
+"""Measure the distance of a head from the nearest person of a reference, by region.
 
-The mean person of a reference is turned, moved and bent along the modes until it lies on the head
-as well as such a person can. The rest is reported as the distance along the head's normals (RMS)
-and the angle between normals (median): normals show form, distances between landmarks do not. Large
-weights mean an unusual head. People fitted by half of the modes have a rest of 0.33 to 0.48 mm and
-2.6 to 3.7 degrees.
+The mean person of a reference is rotated, moved and deformed along the modes until it fits the head
+as closely as possible. The remaining difference is reported as the RMS distance along the head's
+normals, and as the median angle between normals; normals show form, while distances between
+landmarks do not. Large weights mean an unusual head. For real people fitted with half of the modes,
+the difference is 0.33 to 0.48 mm and 2.6 to 3.7 degrees.
 
-Vertices in nostrils and between lips are left out, because each mesh has its own insides. Source of
-the fit: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable
-model" (a shape model fitted to a surface, nearest points in turns with weights).
+Vertices in nostrils and between lips are left out, because meshes differ there. Source of the fit:
+Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable model" (it
+alternates between the search for nearest points and the solution for weights).
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ from .subjects import DENSE, MILLIMETRES, MODES, Faces, Points, read_arrays
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
 
-# [mm] RMS: largest rest of the finer mesh.
+# [mm] Largest RMS distance of the finer mesh.
 MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 
 
 @dataclass(frozen=True)
 class IdentitySpace:
-    """People as mean + weights @ modes, all [mm].
+    """A linear model of people's heads: mean + weights @ modes [mm].
 
-    It comes from a folder of `bench reference`: `identity_modes.npz` has the components of
-    ICT-FaceKit's identity on the vertices of `face.npz`, `modes` (k, V, 3) [cm], each at one
-    standard deviation.
+    It is read from a folder made by `bench reference`. `identity_modes.npz` there holds `modes` (k,
+    V, 3) [cm]: the displacement of the vertices of `face.npz` by each component of ICT-FaceKit's
+    identity at one standard deviation.
     """
 
     mean: Points
@@ -75,7 +75,7 @@ class IdentitySpace:
         )
 
     def person(self, weights: Points) -> Points:
-        """The vertices of one person [mm], shape (V, 3)."""
+        """The vertices of the person with these weights [mm], shape (V, 3)."""
         return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def regions(self) -> Labels:
@@ -103,7 +103,8 @@ class IdentitySpace:
         return found
 
     def _hidden(self) -> Flags:
-        """Which vertices look at skin: straight ahead, or in three of seven directions, (V,)."""
+        """Flags of vertices that face other skin straight ahead or in three of seven directions,
+        (V,)."""
         facing = vertex_normals(self.mean, self.triangles)
         aside = unit_vectors(np.cross(facing, np.roll(facing, 1, axis=1)))
         upward = np.cross(facing, aside)
@@ -135,7 +136,7 @@ class HeadMesh:
 
 @dataclass(frozen=True)
 class Rest:
-    """The rest of a surface that people's modes do not explain."""
+    """The difference between a surface and the nearest person of the modes."""
 
     weights: Points
     """Weights of the modes, shape (k,), in standard deviations."""
@@ -146,7 +147,7 @@ class Rest:
 
 
 def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
-    """Measure both the coarse and the finest mesh of a head, by default of the built-in one.
+    """Measure the coarse and the finest mesh of a head; without a file, of the built-in head.
 
     Raises UserError for a broken folder, AssetError for a broken head.
     """
@@ -164,7 +165,7 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
 
 
 def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest:
-    """The rest of a surface that the nearest person of the space does not explain.
+    """Fit the nearest person of the space to a surface, and measure the remaining difference.
 
     labels: the region of each of the space's vertices, "" for none.
     """
@@ -178,11 +179,11 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     )
     shift = wanted_middle - turn.apply(marked).mean(axis=0)
     rounds = 18  # of nearest points
-    landmark_rounds = 6  # first rounds, which landmarks also lead
+    landmark_rounds = 6  # first rounds, in which landmarks are fitted too
     landmark_weight = 0.3  # of 1/mm^2
-    farthest_distance = 12.0  # [mm] that points may be apart
+    farthest_distance = 12.0  # [mm] between matched points
     independent_points = 600  # points that count as independent: neighbours have similar errors
-    face_landmarks = slice(17, 68)  # without the outline of the face, which slides
+    face_landmarks = slice(17, 68)  # without the outline, which has no fixed place on skin
     for number in range(rounds):
         points = turn.apply(space.person(weights)) + shift
         modes = space.modes @ turn.as_matrix().T
@@ -201,7 +202,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
                 system = _changes(modes, points, marks, np.tile(axis, (len(marks), 1)))
                 normal += landmark_weight * system.T @ system
                 right += landmark_weight * system.T @ off @ axis
-        normal[:count, :count] += np.eye(count)  # a weight is as likely as among people
+        normal[:count, :count] += np.eye(count)  # Gaussian prior of the weights
         right[:count] -= weights
         step = np.linalg.solve(normal, right)
         weights = weights + step[:count]
@@ -223,9 +224,9 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
 
 
 def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Points:
-    """Motion of points along their ways (n, 3) by modes, turns and shifts, (n, K + 6).
+    """Derivative of points along directions `ways` (n, 3), by modes, turns and shifts, (n, K + 6).
 
-    modes: turned, shape (K, V, 3). numbers: those of the points, shape (n,).
+    modes: rotated, shape (K, V, 3). numbers: indices of the points, shape (n,).
     """
     by_modes = np.einsum("kij,ij->ik", modes[:, numbers], ways)
     # A small turn w about the origin moves a point p along n by (p x n) w.
@@ -236,7 +237,8 @@ def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Poi
 def _feet(
     points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
-    """Nearest points of the surface to the given ones, their normals, cosines of both normals."""
+    """Nearest point of the surface to each point, its normal, and the cosine between both
+    normals."""
     own = vertex_normals(points, triangles)[asked]
     at = nearest_on(points[asked], own, surface.vertices, surface.faces)
     facing = at.interpolate(surface.normals)

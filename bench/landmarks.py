@@ -1,16 +1,16 @@
-"""Third-party detectors on one of our sets: a comparison of both definitions of landmarks.
+"""Compare landmarks of third-party detectors with the labels of a data set.
 
 dlib's shape predictor learned iBug's 68 points (Kazemi, Sullivan 2014; Sagonas et al. 2016).
-MediaPipe's face landmarker (Google, Apache-2.0) has its own mesh. Here the 68 are set on lines of
-this mesh by the scheme: evenly along a brow or a jaw, half way between peak and corner of the lips.
-An error is a distance in the picture, in hundredths of the distance between the outer corners of
-the eyes at their depth. It has two parts:
+MediaPipe's face landmarker (Google, Apache-2.0) has its own mesh. Here the 68 points are placed on
+lines of this mesh by the rules of iBug's scheme: evenly along a brow or a jaw, and half way between
+the peak and the corner of the lips. An error is a distance in the picture, in hundredths of the
+distance between the outer corners of the eyes at their depth. It has two parts:
 
     constant the mean offset of a point on frontal pictures, both sides as one: another definition
-    the rest   how well the detector works on these pictures
+    the rest   the detector's own error on these pictures
 
-A detector checks a definition; it does not measure a face's form. Pictures of masked persons are
-left out, because there it guesses.
+A detector checks the definition of landmarks; it does not measure a face's form. Pictures of masked
+persons are left out, because a detector can only guess there.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from .subjects import GROUPS
 Detector = Callable[[Image], Floats64 | None]
 
 DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
-# The points of the right side, which are mirror images of those of the left.
+# The points of the face's right side.
 RIGHT = {*range(8), *range(17, 22), 31, 32, *range(36, 42), 48, 49, 50, 58, 59, 60, 61, 67}
 MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures
 MOST_CONSTANT = 1.5  # percent, of any point
@@ -52,10 +52,10 @@ MOST_YAW = 10.0  # [degrees] of frontal pictures
 class Finding:
     """The errors of a detector on the pictures of a set.
 
-    errors: those of each picture and point, in the frame of the face: along the line of the eyes to
-    the subject's left, and down [percent of the eyes' distance], (n, 68, 2). yaw: that of the heads
-    [degrees], (n,). picture_count: number of pictures without a mask, including those without a
-    found face.
+    errors: error of each point in each picture [percent of the eyes' distance], (n, 68, 2); the
+    first axis runs along the line of the eyes to the subject's left, the second down the face. yaw:
+    yaw of each head [degrees], (n,). picture_count: number of pictures without a mask, including
+    pictures in which no face was found.
     """
 
     detector: str
@@ -75,7 +75,7 @@ class Finding:
 
     @property
     def constant(self) -> Floats64:
-        """The mean error of each point on frontal pictures, both sides as one, (68, 2)."""
+        """The mean error of each point on frontal pictures, averaged over both sides, (68, 2)."""
         if not self.is_frontal.any():
             return np.full((68, 2), np.nan)
         mean = self.errors[self.is_frontal].mean(axis=0)
@@ -89,10 +89,10 @@ def is_installed(detector: str) -> bool:
 
 @contextlib.contextmanager
 def opened(detector: str, model: Path | None) -> Iterator[Detector]:
-    """A detector of `DETECTORS` with its model; UserError for a missing or wrong file.
+    """Open a detector of `DETECTORS` with its model; UserError for a missing or wrong file.
 
-    The detector gives the 68 points of a picture (H, W, 3), shape (68, 2) [pixels, the middle of
-    the first one is 0.5], or None without a face.
+    The detector takes a picture (H, W, 3) and returns its 68 points, shape (68, 2) [pixels, the
+    middle of the first pixel is 0.5], or None if it finds no face.
     """
     if detector == "dlib":
         yield _dlib(model)
@@ -112,10 +112,10 @@ def _dlib(model: Path | None) -> Detector:
     except RuntimeError as error:
         raise UserError(f"{file}: is no shape predictor of dlib: {error}") from None
     faces = dlib.get_frontal_face_detector()
-    larger = 1  # number of times that pictures are doubled, for small faces
+    larger = 1  # number of times that a picture is enlarged to twice its size, for small faces
 
     def detect(image: Image) -> Floats64 | None:
-        """The 68 points of the largest face [pixels], shape (68, 2); None without a face."""
+        """The 68 points of the largest face [pixels], shape (68, 2); None if no face is found."""
         array = np.ascontiguousarray(image)
         boxes = faces(array, larger)
         if not boxes:
@@ -146,7 +146,7 @@ def _mediapipe(model: Path) -> Iterator[Detector]:
     with face_landmarker(model) as look:
 
         def detect(image: Image) -> Floats64 | None:
-            """The 68 points of the face [pixels], shape (68, 2); None without a face."""
+            """The 68 points of the face [pixels], shape (68, 2); None if no face is found."""
             found = look(image).face_landmarks
             if not found:
                 return None
@@ -170,9 +170,9 @@ def points_of_mesh(mesh: Floats64) -> Floats64:
 
 
 def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
-    """The points of the middle and of one side, numbered as on the right; side: 0 right, 1 left.
+    """The points of the middle and of one side, numbered as on the right side.
 
-    Numbers of the mesh stand in pairs, right and left.
+    side: 0 for right, 1 for left. Each pair holds the mesh's vertices on the right and the left.
     """
     jaw = [(127, 356), (234, 454), (93, 323), (132, 361), (58, 288), (172, 397), (136, 365),
            (150, 379), (149, 378), (176, 400), (148, 377), (152, 152)]  # fmt: skip
@@ -187,8 +187,8 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
     mesh = mesh.copy()
     above, below = mesh[[(162, 389)[side], (127, 356)[side]]]
     mesh[jaw[0][side]] = 0.25 * above + 0.75 * below  # height of the eyes
-    # The ends of a brow are means of its upper and its lower line; it begins farther from the nose
-    # than iBug's brows.
+    # The ends of a brow are means of the brow's upper and lower lines. The mesh's brow begins
+    # farther from the nose than iBug's.
     outer, inner = mesh[[(46, 276)[side], (55, 285)[side]]]
     mesh[upper_brow[0][side]] = 0.5 * (mesh[upper_brow[0][side]] + outer)
     mesh[upper_brow[-1][side]] = 0.35 * (mesh[upper_brow[-1][side]] + inner) + 0.3 * mesh[9]
@@ -280,7 +280,7 @@ def report(finding: Finding) -> str:
 
 
 def targets(finding: Finding) -> list[Target]:
-    """The bounds on frontal pictures."""
+    """The bounds of errors on frontal pictures."""
     error = _mean(finding.distances[finding.is_frontal])
     constant = float(np.linalg.norm(finding.constant, axis=1).max())
     most = MOST_ERROR[finding.detector]

@@ -1,9 +1,10 @@
-"""A frame with constant splits, compared with a sparse matrix that other programs keep.
+"""Compare a frame of constant splits with multiplication by a stored sparse matrix.
 
 If every edge is split once, one level of Loop subdivision is a matrix, the same in all frames. The
-rivals multiply positions by it: libigl's `loop_matrix` in scipy, and a plain loop over its rows in
-numba. Neither makes normals; ours does. Frames come in pairs, one of ours and one of a rival, and
-the next pair has the opposite order, so that other work on the machine slows both.
+rivals multiply positions by this matrix, which libigl's `loop_matrix` makes: one in scipy, the
+other in a plain loop over rows in numba. Our refiner also makes normals; the rivals do not. Frames
+are timed in pairs, one of ours and one of a rival, in alternating order, so that other work on the
+machine slows both.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ SIZES = ("2k", "20k", "200k", "1M")
 
 
 class Row(NamedTuple):
-    """A rival on one mesh."""
+    """The times of ours and of one rival on one mesh."""
 
     mesh: str
     rival: str
@@ -46,7 +47,7 @@ class Row(NamedTuple):
 def measure(
     sizes: Sequence[str], seconds: float, progress: Callable[[str], object] = lambda _: None
 ) -> list[Row]:
-    """Time ours and each rival on meshes of these sizes, for about `seconds` each.
+    """Time our refiner and each rival on meshes of these sizes, for about `seconds` each.
 
     Raises UserError without libigl.
     """

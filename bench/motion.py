@@ -1,19 +1,20 @@
-"""Quality of the skin's motion: simulated against scanned displacement, shape by shape.
+"""Compare simulated with scanned displacement of the skin, shape by shape.
 
-The benchmark takes a folder of scans (subjects.py), fits the rig to this head like to any other,
-and compares fields of motion, weighted by area. A scanned field has the name of one of ARKit's
-shapes in any spelling, or of a pair without side. It is compared with the displacement by the
-head's rows of this name at 1.
+The benchmark reads a folder of scans (subjects.py), fits the rig to the scanned head as to any
+other, and compares displacement fields, weighted by area. A scanned field is named after one of
+ARKit's shapes in any spelling, or after a pair without its side. It is compared with the simulated
+displacement when the shapes of this name are at 1.
 
-    cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
+    cosine      1 = equal directions and proportions         magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        blob        cosine of a smooth bump
 
-Every shape must be better than a blob: skin that moves like the scanned peak, less and less with
-distance, and also at the mirror image if the scan moves there. A blob knows the scan but no
-anatomy; the best of several widths counts. With its best size it leaves a residual of 1 - blob^2,
-so a shape with a wrong direction or too much motion is worse.
+A blob is the scanned displacement at its peak, spread over the skin by a Gaussian; it is added at
+the mirrored point too if the scan moves there. A blob uses the scan but no anatomy, and the best of
+several widths counts. Every shape must be better than its blob. A blob of the best magnitude has a
+residual of 1 - blob^2, so a shape with a larger residual has a wrong direction or too much motion.
 
-The rig was fitted to sixteen shapes of ICT-FaceKit, so for them this is a training score.
+The rig was fitted to sixteen shapes of ICT-FaceKit, so the score of these shapes is a training
+score.
 """
 
 from __future__ import annotations
@@ -43,10 +44,10 @@ class Row(NamedTuple):
 
 
 def measure(directory: Path) -> tuple[list[Row], list[str]]:
-    """Score every shape of the reference in `directory` that is in the head's ARKit table.
+    """Score each shape of the reference in `directory` that the head's ARKit table contains.
 
-    Returns also the names of fields without a score: unknown ones, and those without motion. Raises
-    UserError, which names the file, if it is broken or no shape is left.
+    Also returns the names of fields without a score: fields with an unknown name or without motion.
+    Raises UserError, which names the file, if it is broken or contains no shape.
     """
     scans = Scans.read(directory)
     simulation = sim.create(scans.head)
@@ -65,7 +66,7 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
 
 
 def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
-    """The shapes of ARKit for a field's name, both of a pair; none for an unknown name."""
+    """ARKit's shapes for a field's name: one, both of a pair, or none for an unknown name."""
     other_names = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
     name = other_names.get(name.lower(), name)
     for ways in ([name], [f"{name}Left", f"{name}Right"]):
@@ -76,7 +77,10 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
 
 
 def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
-    """Displacement by shapes at 1 [mm], (V, 3), from the pose of shapes that they are shares of."""
+    """Displacement by shapes at 1 [mm], (V, 3).
+
+    A shape that is a share of another shape is measured from the pose of that shape.
+    """
     share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}
     settling_frames = 60  # frames of 1/60 s until a pose is still

@@ -1,7 +1,8 @@
-"""Our persons compared with published means: the differences between women and men.
+"""Compare the differences between women and men in our persons with published ones.
 
-Every number is drawn twice, as a woman and as a man, so that chance is the same in both. Widths
-measured by calipers are compared with those of the skin, minus the pressed depth.
+Every person's number is drawn twice, as a woman and as a man, so that both have equal random
+values. A caliper presses the skin, so this depth is subtracted from our widths before they are
+compared with published ones.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .report import Target, at_most, table
 
 @dataclass(frozen=True)
 class Row:
-    """One measure of NORMS: means of our women and men, and published ones [mm]."""
+    """One measure of NORMS: means of our women and men, and published means [mm]."""
 
     code: str
     women: float
@@ -31,17 +32,17 @@ class Row:
 
     @property
     def apart(self) -> float:
-        """Difference of men's mean from women's [mm]."""
+        """Mean of men minus mean of women [mm]."""
         return self.men - self.women
 
     @property
     def published_apart(self) -> float:
-        """The same, published [mm]."""
+        """Published mean of men minus published mean of women [mm]."""
         return self.published_men - self.published_women
 
 
 def measure(count: int) -> list[Row]:
-    """Draw this number of women and men."""
+    """Draw `number` women and as many men, and measure them."""
     space = person_space()
     means = {}
     for sex in Sex:
@@ -74,6 +75,6 @@ def report(rows: list[Row]) -> str:
 
 
 def targets(rows: list[Row]) -> list[Target]:
-    """The targets: differences between sexes are about the published ones."""
+    """The targets: differences between the sexes are near the published ones."""
     off = np.mean([abs(row.apart - row.published_apart) / row.deviation for row in rows])
     return [at_most("sexes off the published distance, in deviations", float(off), 0.4)]

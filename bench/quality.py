@@ -1,19 +1,19 @@
-"""Distance of a refined mesh from the true surface, and of its picture, by number of triangles.
+"""Measure the error of refined meshes and of their pictures, against the number of triangles.
 
-A coarse face moves with a dense one (subjects.py): the built-in head with one of 16 times its
-triangles, or a decimated scan with the scan. It is refined by all methods of METHODS:
+A coarse and a dense mesh of a face move in the same way (subjects.py). The pairs are the built-in
+head and its mesh with 16 times the triangles, or a decimated scan and the scan itself. The coarse
+mesh is refined by all methods of METHODS, and three errors are reported:
 
-    distance   from every dense vertex the nearest point of the refined mesh is found, exactly;
-               root of the mean square
-    picture    grey levels beside pictures of the dense mesh, both in plain clay without texture or
-               shadows, from VIEWS, shaded per pixel with the normals that the mesh has
-    outline    pixels that one of the two covers and the other does not. Pictures are drawn FINER
-               times too large, so that an outline that is off by a part of a pixel counts by that
+    distance   RMS distance from every dense vertex to the exactly nearest point of the refined mesh
+    picture    RMS difference in grey levels from pictures of the dense mesh. Both meshes are drawn
+               from VIEWS as plain clay without texture or shadows, shaded by the mesh's normals
+    outline    pixels that only one of the two meshes covers. Pictures are drawn FINER times
+               larger, so that an error of a fraction of a pixel counts as this fraction
 
-Edges are split by the paper's criterion `normal`, or by `displacement`, where the scheme would move
-an edge most; thresholds are scaled together until the mesh has BUDGET times the coarse triangles.
-Further methods are the application's preset with its own thresholds, all edges split once or twice,
-and uniform Loop subdivision.
+Edges are split by the paper's criterion `normal`, or by `displacement`, which splits the edges that
+the scheme would move most. Both thresholds are scaled by one factor until the mesh has BUDGET times
+the coarse triangles. The other methods are the application's preset with its own thresholds, the
+split of all edges once or twice, and uniform Loop subdivision.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class Everywhere(refine.Criterion):
         self._splits = splits
 
     def measure(self, positions: object, normals: object, metric: Floats32) -> None:
-        """Write metrics at which all points are fully grown."""
+        """Write the number of splits as the metric of every edge, at which blending is complete."""
         metric[:] = self._splits
 
 
@@ -102,9 +102,9 @@ def measure(
     progress: Callable[[str], object] = lambda _: None,
     methods: Collection[str] = tuple(METHODS),
 ) -> list[Score]:
-    """Score methods in all expressions of a subject, or in those named.
+    """Score methods in the named expressions of a subject, or in all.
 
-    `progress`: takes the name of each expression before it is measured.
+    `progress`: called with the name of each expression before its measurement.
     """
     scores = []
     shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
@@ -129,7 +129,7 @@ def measure(
 
 
 def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callable[[Points], Mesh]:
-    """A function that makes the mesh of a method from positions (V, 3)."""
+    """Bind a method to the subject's coarse mesh: a function from positions (V, 3) to a mesh."""
     own = dict(options)
     if own.get("scheme") == "detail":
         own["scheme"] = refine.DetailScheme((subject.rest.dense, subject.dense_faces))
@@ -150,18 +150,18 @@ def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callab
 def _slid(
     refiner: refine.Refiner, criterion: Any, positions: Points, most: float
 ) -> refine.RefinedMesh:
-    """Refine with thresholds, scaled together, that give `most` triangles or a few less."""
+    """Refine with both thresholds scaled so that there are `most` triangles or slightly fewer."""
     usual = type(criterion)().thresholds
 
     def refined(logarithm: float) -> refine.RefinedMesh:
-        """The mesh with thresholds scaled by e to this power."""
+        """The mesh with thresholds scaled by exp(logarithm)."""
         scale = float(np.exp(logarithm))
         once = scale * float(usual.once)
         twice = scale * float(usual.twice)
         criterion.thresholds = Thresholds(once, twice, "measures")
         return refiner.refine(positions)
 
-    scales = (1e-5, 1e3)  # of thresholds: too many, too few triangles
+    scales = (1e-5, 1e3)  # of thresholds: the first gives too many triangles, the second too few
     low, high = np.log(scales)
     search_steps = 18
     for _ in range(search_steps):
@@ -181,13 +181,13 @@ def _shoot(
     drawings = [Drawing(camera, on_black) for camera in cameras]
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
-    covered = fine > 0.0  # lit clay is never black, an empty frame is
+    covered = fine > 0.0  # lit clay is never black, but an empty frame is
     level_behind = 215.0  # grey level of the background, about that of the window's
     return _block_means(np.where(covered, fine, level_behind)), covered
 
 
 def _apart(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[float, float]:
-    """Root mean square of grey levels, and pixels of the outline in a view."""
+    """RMS difference in grey levels, and the mean number of wrong outline pixels per view."""
     (grey, covered) = shots
     (true_grey, true_covered) = truth
     either = _block_means(covered | true_covered) > 0.0
@@ -196,12 +196,12 @@ def _apart(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[fl
 
 
 def _block_means(fine: npt.NDArray[Any]) -> Points:
-    """Means over the fine pixels of each pixel."""
+    """Average the fine pixels of each pixel."""
     return np.asarray(fine.reshape(-1, SIZE, FINER, SIZE, FINER).mean(axis=(2, 4)))
 
 
 def means(scores: Sequence[Score]) -> dict[str, Score]:
-    """The mean over expressions for each method."""
+    """The scores of each method, averaged over expressions."""
     found = {}
     for method in dict.fromkeys(score.method for score in scores):
         rows = [score[2:] for score in scores if score.method == method]
