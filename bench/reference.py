@@ -2,12 +2,12 @@
 
 ICT-FaceKit (USC Institute for Creative Technologies, MIT licence) has one head as OBJ files of the
 same topology: neutral, in many expressions, and moved along each of its principal components of
-identity. Their first 9409 vertices are the face. The written files are, in centimetres,
+identity. The first 9409 vertices of each file are the face. The written files, in centimetres, are:
 
     face.npz            vertices (V, 3), triangles (F, 3), landmarks68 (68,), and for each
                         expression of SHAPES how far its vertices move at full strength (V, 3)
-    identity_modes.npz  modes (k, V, 3): the components, each at one standard deviation of people
-    LICENSE             that of the checkout
+    identity_modes.npz  modes (k, V, 3): displacement by each component at one standard deviation
+    LICENSE             a copy of the checkout's licence
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
 
 
 def make(checkout: Path, folder: Path) -> list[str]:
-    """Write the files into `folder`; return a line for each, and for each missing source.
+    """Write the files into `folder`; return a line for each file and for each missing source.
 
-    Raises UserError for a folder that is not a checkout, and OSError.
+    Raises UserError if `checkout` is not a checkout of ICT-FaceKit, and OSError.
     """
     licence_file = "LICENSE"
     for name in (DENSE, MODES, licence_file):
@@ -94,7 +94,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
 
 
 def _file(checkout: Path, name: str) -> Path | None:
-    """The OBJ file with this name, compressed or not."""
+    """Path of the OBJ file with this name, compressed or not."""
     files = (checkout / MODEL / f"{name}{suffix}" for suffix in (".obj", ".obj.gz"))
     return next((file for file in files if file.is_file()), None)
 
@@ -110,7 +110,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
         content = file.read_bytes()
         if file.suffix == ".gz":
             content = gzip.decompress(content)
-        most_elements = 500_000  # vertices and triangles of a file
+        most_elements = 500_000  # limit for vertices and for triangles
         surface = read_obj(content, most=most_elements)
         return surface.vertices, surface.faces
     except (assets.AssetError, EOFError, gzip.BadGzipFile, zlib.error) as error:

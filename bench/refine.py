@@ -1,19 +1,18 @@
-"""The time of a frame of refinement, for all methods and sizes of mesh in one run.
+"""Time a frame of refinement, for all methods and mesh sizes in one run.
 
-Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the refiner is
-timed from positions to a filled stream, with everything: normals, criterion, points, table, output
-and the call from Python. Meshes: the built-in face in six full expressions with the default
-thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids of
-jittered squares under travelling waves. They are flat at rest, so that every edge bends. Lengths
-are in cells: a wave has the same number of triangles in a small and in a large mesh, so edges bend
-equally.
+Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the timed span
+runs from positions to a filled stream and includes everything: normals, criterion, points, table
+look-up, output and the call from Python. The meshes are the built-in face in six full expressions,
+with the default thresholds, and large grids of jittered squares under travelling waves, with
+thresholds that split 10, 50 or 100 % of the edges. The grids are flat at rest, so every edge bends
+in the waves. Wave lengths are given in cells, so edges bend equally in small and large meshes.
 
-The methods of a mesh run interleaved, forwards and backwards in turn, with garbage collection off,
-and medians are reported. On a shared machine times drift by a third within a run, so only rows of
-one mesh can be compared. The best time is reported beside the median for the same reason.
+The methods of a mesh run interleaved, in alternating order, with garbage collection off, and
+medians are reported. On a shared machine, times drift by a third within a run. So only rows of one
+mesh can be compared, and the best time is reported beside the median.
 
 On the graphics card a frame lasts from the upload of positions until OpenGL has finished. The
-times of the processor do not include the upload of rows and triangles, which drawing needs too.
+processor's times do not include the upload of vertices and triangles, which drawing also needs.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ RULES: Mapping[str, Mapping[str, Any]] = {"paper's rule": {}, "window's look": W
 
 @dataclass(frozen=True)
 class Load:
-    """A mesh and its frames."""
+    """A mesh, and the positions of its frames."""
 
     name: str
     faces: Faces
@@ -75,7 +74,7 @@ class Row(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """A method, the mean number of its triangles, and its call, which refines positions."""
+    """A method, the mean number of triangles that it makes, and the call that refines positions."""
 
     method: str
     triangles: float
@@ -91,7 +90,7 @@ def measure(
 ) -> list[Row]:
     """Measure each of `sizes`, "face" or a key of TRIANGLE_COUNTS, for about `seconds` each.
 
-    on_card: processor and graphics card side by side. Raises UserError without OpenGL 4.3.
+    on_card: compare the processor with the graphics card. Raises UserError without OpenGL 4.3.
     """
     rows = []
     for size in sizes:
@@ -104,7 +103,7 @@ def measure(
 
 
 def load_of(size: str) -> Load:
-    """The mesh of a size, and its frames."""
+    """The mesh called `size`, and its frames."""
     if size != "face":
         triangle_counts = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
         return waving_mesh(size, triangle_counts[size])
@@ -118,9 +117,9 @@ def load_of(size: str) -> Load:
 
 
 def waving_mesh(name: str, triangle_count: int) -> Load:
-    """Make a sheet of about `triangle_count` triangles, in scan order.
+    """Make a waving sheet of about `triangle_count` triangles.
 
-    So neighbours in the mesh are neighbours in memory.
+    The triangles lie in scan order, so neighbours in the mesh are near each other in memory.
     """
     side = round((0.5 * triangle_count) ** 0.5)
     flat, faces = make_grid(side, side, 1.0)
@@ -132,7 +131,7 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
 
 
 def _waved(rest: Points, phase: float) -> Points:
-    """The mesh at a moment of its waves, which are stronger in some places."""
+    """Positions of the mesh at a phase of its waves, which are stronger in some places."""
     x = rest[:, 0]
     y = rest[:, 1]
     strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
@@ -142,7 +141,7 @@ def _waved(rest: Points, phase: float) -> Points:
         along = np.cos(direction) * x + np.sin(direction) * y
         height += np.sin(2.0 * np.pi * (along / length - phase))
     moved = rest.copy()
-    wave_height = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
+    wave_height = 1.0  # [cells]; bends most edges by 2 to 20 degrees
     moved[:, 2] += wave_height * strength * height
     return moved
 
@@ -150,7 +149,7 @@ def _waved(rest: Points, phase: float) -> Points:
 def _face_cases(load: Load) -> list[_Case]:
     fine = assets.load("head").finer(1)
     cases = [_own("none", load, "none")]
-    # The paper's method, and each scheme and each option added to it.
+    # The paper's method, then the method with another scheme or option.
     methods: Mapping[str, Mapping[str, Any]] = {
         "kahler": {},
         "kahler, blend": {"blend": True},
@@ -167,7 +166,7 @@ def _face_cases(load: Load) -> list[_Case]:
 
 
 def _waving_cases(load: Load) -> list[_Case]:
-    """The window's look; and the paper's method, which splits SHARES of the edges in all frames."""
+    """The window's look, and the paper's method with thresholds for given shares of split edges."""
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
 
@@ -193,7 +192,7 @@ def _waving_cases(load: Load) -> list[_Case]:
 
 
 def _card_cases(load: Load) -> list[_Case]:
-    """The paper's rule and the window's look, by the processor and on the graphics card."""
+    """The paper's rule and the window's look, on the processor and on the graphics card."""
     cases = []
     for title, options in RULES.items():
         card = refine.create("kahler-gl", load.faces, load.rest, **options)
@@ -214,14 +213,14 @@ def _card_cases(load: Load) -> list[_Case]:
 
 
 def _own(method: str, load: Load, refiner: str, **options: Any) -> _Case:
-    """A case of our refiners over all frames; the first pass compiles kernels, and counts."""
+    """A case of one of our refiners; a first pass compiles kernels and counts triangles."""
     bound = refine.create(refiner, load.faces, load.rest, **options)
     counts = [len(bound.refine(frame).triangles) for frame in load.frames]
     return _Case(method, float(np.mean(counts)), bound.refine)
 
 
 def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
-    """A case of `kahler` with the same triangles in all frames, those that the clip needs."""
+    """A case of `kahler` with one topology in all frames: the splits that any frame needs."""
     changing = refine.create("kahler", load.faces, load.rest, **options)
     splits = refine.splits_of_clip(changing, load.frames)
     others = {name: value for name, value in options.items() if name != "criterion"}
@@ -229,7 +228,7 @@ def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
 
 
 def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
-    """Rows of all cases, in as many rounds as fit the time."""
+    """Time all cases in as many rounds as fit into `seconds`; return a row for each case."""
 
     def run(case: _Case) -> None:
         for frame in load.frames:
@@ -256,8 +255,8 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
 def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> Floats64:
     """Return the seconds of each call in each round, shape (rounds, len(calls)).
 
-    The speed of a call depends on the caches after the call before it. Each of three or more calls
-    always follows the same neighbours, so two calls are timed as a pair for a close comparison.
+    A call's speed depends on the state in which the previous call left the caches. Of three or more
+    calls, each always has the same neighbours; so time only two calls for a close comparison.
     """
     seconds = np.zeros((rounds, len(calls)))
     gc.disable()

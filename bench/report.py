@@ -1,4 +1,4 @@
-"""The output of all commands of `risorius bench`: tables, targets, and the machine."""
+"""The output of all commands of `risorius bench`: tables, targets, and the processor's name."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import click
 
 
 def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -> list[str]:
-    """Lines of a table, with the titles first; None is left empty.
+    """Lines of a table, with the titles first; the cell of None is empty.
 
     columns: "title:format" with the width first, as in "name:<9|ms:8.3f"; "<" aligns text left.
     """
@@ -33,7 +33,7 @@ def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -
 
 
 class Target(NamedTuple):
-    """A bound on a result of a benchmark, in words, and whether it is met."""
+    """A bound on a result, as text, and whether the result meets it."""
 
     text: str
     is_met: bool
@@ -43,12 +43,12 @@ class Target(NamedTuple):
 
 
 def at_most(name: str, value: float, most: float, unit: str = "") -> Target:
-    """A value that must not be larger; NaN misses it."""
+    """The target that `value` is not larger than `most`; NaN misses it."""
     return Target(f"{name}: {value:.4g}{unit}, at most {most:g}{unit}", value <= most)
 
 
 def at_least(name: str, value: float, least: float, unit: str = "") -> Target:
-    """A value that must not be smaller; NaN misses it."""
+    """The target that `value` is not smaller than `least`; NaN misses it."""
     return Target(f"{name}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
 
 
@@ -61,7 +61,7 @@ def conclude(text: str, targets: Iterable[Target]) -> None:
 
 
 def say_progress(name: str) -> None:
-    """Print the name of the present step to the error stream, if that is a terminal."""
+    """Print the name of the current step to the error stream, if the stream is a terminal."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)
 

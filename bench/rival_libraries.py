@@ -1,8 +1,8 @@
 """Other libraries that refine triangle meshes, each behind the same two calls.
 
-A method is bound to triangles and rest positions once, and keeps all that its library can keep. A
-frame takes positions and, if the method has one, its limit. Each library has the settings that came
-nearest to the true surfaces of rivals.py.
+The first call binds a method to triangles and rest positions, and stores all data that its library
+can reuse. The second call refines a frame from positions and, for some methods, a limit. Each
+library is used with the settings that came nearest to the true surfaces of rivals.py.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Frame = Callable[[Points, float], Surface]
 
 
 class Method(NamedTuple):
-    """One way of refining, of a library."""
+    """One refinement method of a library."""
 
     title: str
     package: str
@@ -38,7 +38,7 @@ class Method(NamedTuple):
 
 
 def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
-    """Smooth by tangents. It needs closed surfaces, so holes get lids, which are removed again."""
+    """Smooth by tangents. Holes are filled for a closed surface; the result is without fillings."""
     manifold3d = import_module("manifold3d")
     lids: list[tuple[int, int, int]] = []
     loops = boundary_loops(faces)
@@ -49,7 +49,7 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
     closed = np.concatenate([faces, np.array(lids, dtype=np.int32).reshape(-1, 3)])
     closed = closed.astype(np.uint32)
     names = np.arange(len(closed), dtype=np.uint32)
-    rims = list(range(3 * count, 3 * len(closed), 3))  # the first half edge of each lid's triangle
+    rims = list(range(3 * count, 3 * len(closed), 3))  # first half edges of fillings
 
     def frame(positions: Points, limit: float) -> Surface:
         """The refined surface of a frame."""
@@ -105,7 +105,7 @@ def _pymeshlab(faces: Faces, rest: Points, rule: str) -> Frame:
 
 
 def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
-    """Run one of VTK's filters, which keeps its input, for each frame."""
+    """Run one of VTK's filters for each frame; the filter object is reused."""
     modeling = import_module("vtkmodules.vtkFiltersModeling")
     data = import_module("vtkmodules.vtkCommonDataModel")
     core = import_module("vtkmodules.vtkCommonCore")
@@ -120,7 +120,7 @@ def _vtk(faces: Faces, rest: Points, rule: str) -> Frame:
     subdivision = getattr(modeling, f"vtk{rule}SubdivisionFilter")()
     subdivision.SetInputData(mesh)
     if rule == "Adaptive":
-        subdivision.SetMaximumTriangleArea(np.inf)  # only lengths count
+        subdivision.SetMaximumTriangleArea(np.inf)  # the limit is a length only
 
     def frame(positions: Points, limit: float) -> Surface:
         """The refined surface of a frame."""

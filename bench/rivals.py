@@ -1,16 +1,16 @@
 """Refinement compared with other libraries: distance to the true surface, and time.
 
-A coarse mesh with vertices on a known surface is refined to four times its triangles, the number of
-one level of Loop subdivision. Methods with a limit (a length, a tolerance, a number of splits) get
-the limit that leads nearest to this number without exceeding it.
+A coarse mesh, whose vertices lie on a known surface, is refined to four times its triangles, as in
+one level of Loop subdivision. For methods with a limit (a length, a tolerance, a number of splits),
+the limit is chosen that leads nearest to this number without exceeding it.
 
-    distance   from each point of the true surface the nearest point of the mesh is found, exactly;
-               root of the mean square, in millionths of the diagonal of the surface's box
-    first      from arrays of triangles and positions to arrays of the refined mesh [ms]
-    frame      the same for further positions, where all that a library lets keep is kept [ms]
+    distance   RMS distance from points of the true surface to the exactly nearest points of the
+               mesh, in millionths of the diagonal of the surface's box
+    first      time from arrays of triangles and positions to arrays of the refined mesh [ms]
+    frame      time for further positions, with all data reused that a library can reuse [ms]
 
-Times are the shortest of many calls, which other work on the machine affects least. Ours also makes
-normals of the refined mesh; the others make none.
+Each time is the shortest of many calls, because other work on the machine affects it least. Our
+method also makes normals of the refined mesh; the others do not.
 """
 
 from __future__ import annotations
@@ -67,14 +67,14 @@ class Row(NamedTuple):
 
 
 class _Frame:
-    """A frame of a refiner: positions and triangles of the mesh that it makes."""
+    """Our refiner as a rival's frame: refines positions, returns positions and triangles."""
 
     def __init__(self, refiner: refine.Refiner, criterion: refine.Displacement | None) -> None:
         self._refiner = refiner
         self._criterion = criterion
 
     def __call__(self, positions: Points, limit: float) -> Surface:
-        """Refine with the thresholds of the criterion scaled by `limit`."""
+        """Refine with the criterion's thresholds multiplied by `limit`."""
         if self._criterion is not None:
             self._criterion.thresholds = Thresholds(limit, 5.0 * limit, "measures")
         mesh = self._refiner.refine(positions)
@@ -110,7 +110,7 @@ OURS: Sequence[Method] = tuple(
 
 
 def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
-    """A sphere, the plane under its full sine, and the pose of most motion for each subject."""
+    """A sphere, the plane under its full sine, and each subject in its most moved pose."""
     coarse = trimesh.creation.icosphere(2)
     faces = np.array(coarse.faces, dtype=np.int32)
     points = np.array(coarse.vertices)
@@ -120,7 +120,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
     plane = PlaneScene()
     plane.pose({"amplitude": 1.0})
     plane.step(1.0 / 30.0)
-    fineness = 12  # cells of the true sine in each cell of the plane, each way
+    fineness = 12  # cells of the true sine per cell of the plane, in each direction
     flat, _ = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
     sine, _ = plane.waved(flat)
     yield Case("sine plane", plane.faces, plane.rest_positions, plane.positions.copy(), sine)
@@ -148,7 +148,7 @@ def available() -> tuple[list[Method], list[str]]:
 
 
 def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list[Row], list[str]]:
-    """Rows of the methods, and a line for each method that does not accept the mesh.
+    """Measure the methods: rows, and a line for each method that does not accept the mesh.
 
     `seconds`: time for each, with at least five calls.
     """
@@ -163,7 +163,7 @@ def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list
             skipped.append(f"skipped: {method.title} of the {case.surface}: {error}")
             continue
         distance = _distance(case, surface)
-        # One after another: threads of one library would slow those of the next.
+        # Not interleaved: threads of one library would slow the next library.
         time_of_each = 0.5 * seconds / len(methods)
         first = _shortest(partial(_first, case, method, limit), time_of_each)
         further = _shortest(frame, time_of_each)
@@ -189,13 +189,13 @@ def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
 
 
 def _limit(case: Case, method: Method) -> float:
-    """The limit that leads to TIMES the triangles, or a few less."""
+    """The limit that leads to TIMES the triangles, or slightly fewer."""
     frame = method.bind(case.faces, case.rest)
 
     def is_over(limit: float) -> bool:
         return len(frame(case.positions, limit)[1]) > TIMES * len(case.faces)
 
-    # Begin with few triangles: a far too low limit may lead to billions of them.
+    # Begin with few triangles: a limit that is far too low may lead to billions.
     high = 10.0 * float(np.linalg.norm(np.ptp(case.positions, axis=0)))
     smallest = 1e-9 * high
     while high > smallest and not is_over(0.5 * high):
@@ -224,7 +224,7 @@ def _first(case: Case, method: Method, limit: float) -> Surface:
 
 
 def _shortest(call: Callable[[], object], seconds: float) -> float:
-    """The shortest time of a call [ms], out of at least five and as many as fit the time."""
+    """The shortest time [ms] of at least five calls, or of as many as fit into `seconds`."""
     fewest_rounds = 5
     times: list[float] = []
     while len(times) < fewest_rounds or sum(times) < seconds:

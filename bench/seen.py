@@ -1,13 +1,13 @@
-"""A face tracker on our faces: every shape of ARKit at 1, read back from pictures.
+"""Set every shape of ARKit to 1 on our face, and recognise it with a face tracker.
 
 A shape should be recognised by an independent tracker: MediaPipe's face landmarker (Google,
 Apache-2.0) finds a face in a picture and scores each of ARKit's shapes, 0 to 1, except `tongueOut`.
-Users supply its model file, face_landmarker.task. Each shape is drawn from VIEWS and shown directly
-and mirrored, so that differences between the tracker's left and right do not count. The report has
-the mean score minus that of the neutral face:
+Users supply the model file face_landmarker.task. Each shape is drawn from VIEWS, and each picture
+is also mirrored, so that differences between the tracker's left and right cancel out. The report
+lists mean scores minus those of the neutral face:
 
-    own      of the shape itself; of a pair, both sides of which are posed, the mean of both
-    highest  the other shape that scores most, with its score; of pairs the mean of both sides
+    own      score of the shape itself; both sides of a pair are posed, and their mean counts
+    highest  the other shape with the highest score, and this score; a pair's score is its mean
 
 A tracker does not measure anatomy: it learned which shapes occur together in real faces, and it
 never reports some shapes, not even in scans of real faces (docs/capture.md).
@@ -39,13 +39,13 @@ from .report import table
 Scores = dict[str, float]
 Tracker = Callable[[Image], Scores]
 
-VIEWS = ("front", "-8,0", "8,0")  # as people sit in front of a camera
+VIEWS = ("front", "-8,0", "8,0")  # as of people in front of a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 
 
 @contextlib.contextmanager
 def face_tracker(model: Path) -> Iterator[Tracker]:
-    """A tracker with a model file: it gives every shape's score in a picture (H, W, 3), or {}.
+    """Open a tracker: a function from a picture (H, W, 3) to all shapes' scores, {} without a face.
 
     Raises UserError as `face_landmarker` does.
     """
@@ -60,9 +60,9 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
 
 @contextlib.contextmanager
 def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], Any]]:
-    """MediaPipe's face landmarker with a model file; it gives its result for a picture (H, W, 3).
+    """Open MediaPipe's face landmarker: a function from a picture (H, W, 3) to its result.
 
-    Raises UserError for another file, and without MediaPipe.
+    Raises UserError if the file is no such model, or if MediaPipe is missing.
     """
     with silent():
         mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
@@ -85,7 +85,7 @@ def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], 
             f"{model}: is no model of MediaPipe's face landmarker, which is called "
             f"face_landmarker.task: {error}"
         ) from None
-    with contextlib.closing(landmarker):  # left open, it fails at Python's end
+    with contextlib.closing(landmarker):  # an open landmarker fails when Python exits
         yield look
 
 
@@ -93,7 +93,7 @@ def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], 
 def silent() -> Iterator[None]:
     """Silence the tracker's libraries, which print their loading; errors are still raised.
 
-    They write to the stream's file descriptor, past Python, and have no switch for this.
+    The libraries write directly to the stream's file descriptor, and no option stops them.
     """
     sys.stderr.flush()
     kept = os.dup(2)
@@ -107,7 +107,7 @@ def silent() -> Iterator[None]:
 
 
 class Shape(NamedTuple):
-    """The scores of one shape, or pair of shapes; see the module."""
+    """The scores of one shape or pair of shapes; the module's docstring defines them."""
 
     own: float
     highest: str
@@ -115,15 +115,15 @@ class Shape(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """Whether the tracker sees it, and under which name."""
-        seen_score = 0.1  # a lower score means nothing
+        """Whether the tracker recognises the shape, or which other shape it reports."""
+        seen_score = 0.1  # lower scores are noise
         if max(self.own, self.score) < seen_score:
             return "not seen"
         return "seen" if self.own >= self.score else f"as {self.highest}"
 
 
 def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> Scores:
-    """Scores with some controls of a face at 1: mean over VIEWS and their mirror images."""
+    """Scores with `controls` at 1, averaged over VIEWS and their mirror images."""
     scene = studio.scene
     scene.reset()
     scene.pose(dict.fromkeys(controls, 1.0))
@@ -140,7 +140,7 @@ def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> S
 
 
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Every shape of ARKit: its name without side, and its names with them."""
+    """Every shape of ARKit: the name without side, and the names with sides."""
     for name in ARKIT:
         stem, side = parted(name)
         if not side:
@@ -154,10 +154,10 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
 def compared(
     scores: Scores, neutral: Scores, own: Sequence[str], posed: Sequence[str] = ()
 ) -> Shape:
-    """Scores above those of the neutral face, where the shapes `own` are at 1.
+    """Scores minus those of the neutral face, for a pose with the shapes `own` at 1.
 
-    posed: further shapes in the pose, which are no mistakes. Sides count by their mean; if one side
-    was posed alone, by the greater score.
+    posed: further shapes of the pose, which do not count as confusions. The score of a pair is its
+    mean, or the greater one of its scores if only one side was posed.
     """
     is_sided = len(own) == 1 and twin_of(own[0]) != own[0]
     over = {name: scores[name] - neutral[name] for name in scores if name in ARKIT}
@@ -172,12 +172,13 @@ def compared(
 
 
 def measure(tracker: Tracker) -> dict[str, Shape]:
-    """Show every shape of the built-in head to the tracker; return scores by base name."""
+    """Show every shape of the built-in head to the tracker; return scores by name without side."""
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
-        # Shapes whose sides cannot be posed together, and shapes that are posed with them: both
-        # eyes look aside together, and lips close over an open jaw.
+        # The keys are shapes whose sides cannot be posed together, or that need another shape. The
+        # values are shapes posed with them: both eyes look aside together, and lips close over an
+        # open jaw.
         posed_beside = {
             "mouthLeft, Right": (),
             "jawLeft, Right": (),

@@ -1,8 +1,9 @@
 """Reference faces: a folder of scans, and the built-in head with its finer meshes.
 
-A folder of scans, as `risorius bench reference` makes it of ICT-FaceKit, has `face.npz`: vertices
-(V, 3), triangles (F, 3), landmarks68 (68,), and for each expression a displacement field (V, 3);
-all in centimetres. Fields that end in _L and _R are two halves of one expression, and are added.
+A folder of scans holds `face.npz`: vertices (V, 3), triangles (F, 3), landmarks68 (68,), and for
+each expression a displacement field (V, 3); all in centimetres. `risorius bench reference` makes
+such a folder from ICT-FaceKit. Fields that end in _L and _R are two halves of one expression, and
+are added.
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ from risorius.geometry.closest import closest_points
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
+MILLIMETRES = 10.0  # per centimetre, the unit of a folder of scans
 DENSE = "face.npz"
 MODES = "identity_modes.npz"
 SETTLE = 90  # frames of 1/60 s until a pose is still
-COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
-# Landmarks by their places in the face.
+COARSE_TRIANGLES = 2029  # of a decimated scan, about as many as in the built-in head
+# Landmarks by region of the face.
 GROUPS = {
     "jaw": slice(0, 17),
     "brows": slice(17, 27),
@@ -47,7 +48,7 @@ GROUPS = {
 
 @dataclass(frozen=True)
 class Scans:
-    """A scanned neutral face, and its displacement by expressions [mm]."""
+    """A scanned neutral face, and its displacement in each expression [mm]."""
 
     mesh: Mesh
     landmarks: Faces
@@ -91,7 +92,7 @@ class Scans:
 
 @dataclass(frozen=True)
 class PosePair:
-    """One expression, on both meshes [mm]."""
+    """Positions of both meshes in one expression [mm]."""
 
     dense: Points
     coarse: Points
@@ -108,7 +109,7 @@ class Subject:
 
 
 def scanned(scans: Scans) -> Subject:
-    """A scan and its decimation, whose vertices follow the scan under them."""
+    """A scan and its decimation; each coarse vertex moves like the scan at its place."""
     mesh = scans.mesh
     points, faces = decimated(mesh.vertices, mesh.faces, COARSE_TRIANGLES)
     place = closest_points(points, mesh.vertices, mesh.faces)
@@ -118,9 +119,9 @@ def scanned(scans: Scans) -> Subject:
 
 
 def built_in(level: int = 2) -> Subject:
-    """The built-in head, with its finer mesh of a level (1 or 2) as the dense one.
+    """The built-in head, and as the dense mesh its finer mesh of a level (1 or 2).
 
-    The muscles of its rig move the dense mesh, whose first vertices are the coarse mesh.
+    The rig's muscles move the dense mesh; its first vertices are the coarse mesh's vertices.
     """
     head = assets.load("head")
     fine = head.finer(level)
@@ -154,7 +155,7 @@ def fine_simulation(head: assets.Head, fine: FineMesh) -> sim.Simulation:
 def settled_positions(
     simulation: sim.Simulation, values: Mapping[str, float], frames: int
 ) -> Points:
-    """Hold controls from rest for some frames of 1/60 s; a copy of the vertices [mm], (V, 3)."""
+    """Vertices [mm], (V, 3), after controls were held from rest for some frames of 1/60 s."""
     simulation.reset()
     simulation.controls.set_all(values)
     for _ in range(frames):

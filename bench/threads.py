@@ -1,8 +1,8 @@
-"""The time of a frame of refinement by one thread, and by all of them.
+"""Time a frame of refinement with one thread and with all threads.
 
-Frames come in pairs: one by one thread, then one by all; the next pair has the opposite order.
-Other work on the machine slows both frames of a pair, so the gain is the median of their quotients.
-Both have the same bits (refine/mesh/threads.py).
+Frames are timed in pairs, one frame with one thread and one with all, in alternating order. Other
+work on the machine slows both frames of a pair, so the reported gain is the median of the quotients
+of pairs. Both frames have bit-identical results (refine/mesh/threads.py).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SIZES = ("20k", "200k", "1M")
 
 
 class Row(NamedTuple):
-    """One rule on one mesh."""
+    """The times of one rule on one mesh."""
 
     mesh: str
     rule: str

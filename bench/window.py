@@ -1,8 +1,8 @@
-"""Frames a second of the window while a smile plays, and its load while nothing happens.
+"""Measure the window's frames per second while a smile plays, and its load while idle.
 
-The real window runs as fast as it can; it only waits for the screen. Rounds take all cases in turn,
-forwards and backwards, because on a shared machine only cases of one run can be compared. A case
-begins like a new window, with an untimed second to find its level of detail.
+The real window runs as fast as possible; it only waits for the screen. Each round plays all cases,
+in alternating order, because on a shared machine only cases of one run can be compared. A case
+begins like a new window, with one untimed second in which the window chooses its level of detail.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def measure(
 ) -> tuple[str, list[Target]]:
     """Time the window: `seconds` for each case, after a second of warming up.
 
-    `head`: replaces the built-in one; no speed is promised for it. Returns the text to print, and
-    the targets of the window for software OpenGL.
+    `head`: replaces the built-in head; no speed is promised for it. Returns the text to print, and
+    the window's targets for software OpenGL.
     """
     cases = {
         "smile": Display(),
@@ -88,7 +88,7 @@ def _smile() -> Script:
 
 
 def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
-    """Let the window play for a while; return the times of its frames."""
+    """Let the window play for some time; return the times of its frames."""
     viewer.settings.display = replace(display)
     viewer.face.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:
@@ -114,7 +114,7 @@ def _run(viewer: Viewer, seconds: float) -> Frames:
 
 
 def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
-    """Share of one core that the window takes while nothing happens, or during idle life."""
+    """Share of one core that the window uses while nothing happens, or during idle motion."""
     viewer.session.neutral()
     viewer.settings.is_alive = is_alive
     while not (viewer.schedule.is_left_alone if is_alive else viewer.schedule.is_idle):

@@ -1,1 +1,1 @@
-"""The paper repeated: its numbers and pictures, each beside our measurement."""
+"""Repeat the paper's numbers and pictures, each beside our measurement."""

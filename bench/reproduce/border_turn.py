@@ -1,29 +1,30 @@
-r"""A criterion of our own for Fig. 10: changes of the turns of the mesh's borders since rest.
+r"""A criterion of our own for Fig. 10: how much the mesh's borders turn since rest.
 
 It only uses the public names of `refine`, like a criterion of any other package.
 
-A shut mouth is a slit with two straight sides. It may open within its surface: nothing bends and no
-normal turns, so no other criterion notices it; but a straight line becomes an arc. Kähler, Haber,
-Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the opened mouth".
+A shut mouth is a slit with two straight sides. If it opens within its surface, nothing bends and no
+normal turns, so other criteria measure no change; but the straight sides become arcs. Kähler,
+Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the opened mouth".
 
            v          The turn at a vertex a of a border p, a, q, with u and v the
        a------>q      directions of its edges and n the normal at a, is three numbers:
       ^
     u |                   along  u . v        aside  n . (u x v)        up  n . (v - u)
       p
-                      Their distance from those at rest is near the angle [rad] by which the border
-                      turns otherwise, in the surface (aside) and out of it (up). They are smooth
-                      wherever edges have a length, even where the border folds back.
+                      The distance between these numbers and their values at rest is near the angle
+                      [rad] by which the turn has changed, in the surface (aside) and out of it
+                      (up). The numbers are smooth wherever edges have a length, even where the
+                      border folds back.
 
     measure of a border edge = mean of the turns at its ends: the angle between the tangents there
 
-The border itself is rarely visible: it may lie inside the lips, and the eye sees a line beside it.
-So vertices around it take over the mean turn of their neighbours nearer to the border, less with
-every ring, up to REACH_RINGS. An edge there counts as far as it runs along the border, by the
-squared cosine between both: there is no turn across the border, and long, thin triangles along the
-lips are desired (section 5, Fig. 8).
+The border itself is rarely visible: it may lie inside the lips, and a viewer sees a line beside it.
+So a vertex near the border takes over the mean turn of its neighbours nearer to the border, reduced
+with every ring, up to REACH_RINGS. The measure of an edge there is multiplied by the squared cosine
+between the edge and the border: there is no turn across the border, and long, thin triangles along
+the lips are desired (section 5, Fig. 8).
 
-A corner stays a corner, so the border has no turn there.
+At a corner of the mesh the border has no turn, because a corner stays a corner.
 """
 
 from typing import Annotated, NamedTuple
@@ -59,10 +60,10 @@ class Nearby(NamedTuple):
 
 
 class BorderTurn(refine.Criterion):
-    """Borders whose turns change since rest, such as that of an opening mouth."""
+    """Splits edges at borders whose turns change since rest, such as those of an opening mouth."""
 
     def __init__(self, once: Once = 0.03, twice: Twice = 0.12) -> None:
-        """`once`, `twice`: angles between the tangents at both ends of an edge [rad]."""
+        """`once`, `twice`: thresholds for the angle between tangents at an edge's ends [rad]."""
         self.thresholds = refine.Thresholds(once, twice, "angles in radians")
 
     def bind(
@@ -88,7 +89,7 @@ class BorderTurn(refine.Criterion):
 
 
 def turns_of(positions: Floats64, normals: Floats32, curves: Integers64) -> Floats64:
-    """Along, aside and up of the turns of borders p, a, q, shape (T, 3)."""
+    """The numbers along, aside and up of each turn of `curves` (p, a, q), shape (T, 3)."""
     p, a, q = curves.T
     u = _units(positions[a] - positions[p])
     v = _units(positions[q] - positions[a])
@@ -108,7 +109,7 @@ def _units(vectors: Floats64) -> Floats64:
 def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     """Find the vertices and edges on and beside the borders.
 
-    A vertex without a normal at rest, because all triangles around are slivers, has no turn.
+    A vertex surrounded by slivers has no normal at rest, and therefore no turn.
     """
     before, after = port.border_neighbours(mesh, rest_positions).T
     undefined = np.empty(mesh.vertex_count, dtype=np.bool_)
@@ -155,10 +156,10 @@ def rings_from_border(mesh: refine.Connectivity) -> Integers64:
 def ways_inward(
     mesh: refine.Connectivity, ring: Integers64
 ) -> tuple[list[Integers32], list[Floats64]]:
-    """For each ring but the first, the ways along edges to its vertices from the ring before.
+    """For each ring except the first, the edges that lead to its vertices from the previous ring.
 
-    Returns their ends and starts, shape (2, S), and the share of each way in the mean of all ways
-    with the same end, shape (S,).
+    Returns for each ring the ends and starts of these edges, shape (2, S), and the weight of each
+    edge in the mean over all edges with the same end, shape (S,).
     """
     ways = []
     shares = []

@@ -1,11 +1,11 @@
-"""A head with a quarter of the triangles: the visible effect of the paper's rule, and its benefit.
+"""Measure the visible effect of the paper's rule on a head with a quarter of the triangles.
 
 Kähler, Haber, Seidel 2003, section 1: "when the surface is animated by moving the mesh nodes, the
-resulting mesh doesn't adapt well to the deformation." On 536 triangles everybody sees this. As in
-Figure 10, the built-in head with 16 times its triangles is moved by the same muscles, drawn in the
-same way, and taken as the truth; the coarse head has some of its vertices. Below the pictures, the
-pixels that a rule changed are green if they came nearer to the dense mesh, and red if they went
-away.
+resulting mesh doesn't adapt well to the deformation." On 536 triangles this is clearly visible. As
+in Figure 10, the built-in head with 16 times its triangles is moved by the same muscles, drawn in
+the same way, and taken as the truth; the coarse head's vertices are a subset of its vertices. In
+the maps below the pictures, a changed pixel is green if it came nearer to the dense mesh's picture,
+and otherwise red.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ LOOKS = (STATIC, PAPERS_PRESET, FIRST_PRESET)
 
 @dataclass(frozen=True)
 class Cell(Shot):
-    """The picture of one expression by one look, and flags of the head's pixels, (H, W)."""
+    """The picture of one expression in one look, and flags of the head's pixels, (H, W)."""
 
     is_head: Flags
     smoother: float
     """Angle between neighbouring triangles at split edges, over that of the mesh there."""
 
     def wrong(self, truth: Cell) -> int:
-        """Pixels of the head here or in truth, but not in both."""
+        """Number of pixels that show the head here or in truth, but not in both."""
         return int((self.is_head != truth.is_head).sum())
 
 
 def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
-    """Gains of each look toward the dense mesh, and the share of its changes that help."""
+    """Error of each look over that of the static mesh, and the share of its changes that help."""
     rows = []
     sums = {name: np.zeros(5) for name in LOOKS}
     for expression, cells in _drawn(size):
@@ -91,9 +91,9 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
 
 
 def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
-    """Every expression by every look; the cell of the dense mesh is the last of each."""
+    """Draw every expression in every look; the last cell of an expression is the dense mesh."""
     head = assets.load("head")
-    level = 2  # of the finer head: 16 times the triangles
+    level = 2  # the finer head with 16 times the triangles
     fine = head.finer(level)
     simulation = fine_simulation(head, fine)
     coarse = coarse_head()
@@ -102,7 +102,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     refiners = [(refiner_for(scene, each), coarse.file_vertices) for each in asked]
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append((dense, np.arange(len(fine.vertices), dtype=np.int32)))
-    camera = camera_for(scene, "-32,3,1.25")  # at three quarters
+    camera = camera_for(scene, "-32,3,1.25")  # three-quarter view
     empty = replace(CLAY, background=render.BLACK)
     with Canvas(size) as canvas:
         parts = parts_without_hair(scene)
@@ -123,7 +123,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
 
 
 def _smoother(drawn: DrawnMesh, positions: Floats64) -> float:
-    """The mean angle between refined triangles, over that between the split ones; 1 for none."""
+    """Mean angle between subtriangles, over that between the split triangles; 1 without splits."""
     assert drawn.mesh is not None
     splits = drawn.refiner.splits[drawn.refiner.triangle_edges].sum(axis=1)
     is_split = splits > 0
@@ -137,7 +137,7 @@ def _smoother(drawn: DrawnMesh, positions: Floats64) -> float:
 
 
 def _mean_angle(positions: Floats64, faces: npt.NDArray[np.integer]) -> float:
-    """The mean angle between neighbouring triangles, by the length of their edges."""
+    """The mean angle between neighbouring triangles, weighted by the lengths of shared edges."""
     mesh = trimesh.Trimesh(positions, faces, process=False)
     ends = positions[mesh.face_adjacency_edges]
     lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
@@ -145,7 +145,7 @@ def _mean_angle(positions: Floats64, faces: npt.NDArray[np.integer]) -> float:
 
 
 def _map(image: Image, is_changed: Flags, is_nearer: Flags) -> Image:
-    """A pale picture, green where a change came nearer and red where it went away."""
+    """A pale picture, with changed pixels green if they came nearer to the truth, otherwise red."""
     shown = 255 - (255 - image) // 3
     nearer_colour = (30, 150, 80)
     farther_colour = (215, 60, 40)

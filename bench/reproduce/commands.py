@@ -1,4 +1,4 @@
-"""`risorius reproduce`: the paper's table and figures repeated, on a page."""
+"""`risorius reproduce`: repeat the paper's table and figures on a page."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ PATH = click.Path(path_type=Path)
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
     """Repeat the paper's figures and table, all or some, in a folder.
 
-    There are figure8, figure9, figure10, coarse and table1. index.html in the folder shows the
+    The names are figure8, figure9, figure10, coarse and table1. index.html in the folder shows the
     results in the paper's order. The exit code is 1 if a tolerance is missed.
     """
     from risorius.app.files import check_file, save_text
@@ -79,7 +79,7 @@ def _text(result: Result) -> str:
 
 
 def _page(results: Sequence[Result]) -> str:
-    """All results on one page for any browser, which loads the pictures beside it."""
+    """All results on one HTML page; it loads the pictures from its own folder."""
     findings = [finding for result in results for finding in result.findings]
     met = sum(claim.verdict(measured) == "met" for claim, measured in findings)
     made = (

@@ -1,8 +1,8 @@
-"""The numbers of the paper, and their agreement with our measurements.
+"""The paper's claims, and whether our measurements agree with them.
 
-`paper.toml` is the only table of experiments, in the order of the paper. An entry there makes a
-command and a part of the page; a new entry needs no other change. The command line imports this
-module at once, so it has no slow imports.
+`paper.toml` is the only table of experiments, in the order of the paper. Each entry there becomes a
+command and a part of the page; a new entry needs no other change. The command line always imports
+this module, so it has no slow imports.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, and the numbers that agree with it; see `paper.toml`."""
+    """A statement of the paper, and the range of numbers that agree with it; see `paper.toml`."""
 
     value: str
     statement: str
@@ -33,14 +33,14 @@ class Claim:
     """Reason why our number differs from the paper; "" if it should agree."""
 
     def verdict(self, number: float) -> str:
-        """Whether the number agrees; NaN misses, too."""
+        """Whether the number agrees with the statement; NaN does not."""
         if not self.low <= number <= self.high:
             return "MISSED"
         return "differs" if self.differs else "met"
 
     @property
     def allowed(self) -> str:
-        """The numbers that agree with it."""
+        """The range of numbers that agree, as text."""
         low = self.ours(self.low)
         high = self.ours(self.high)
         if low == high:
@@ -52,7 +52,7 @@ class Claim:
         return f"(expected here: {text})" if self.differs else text
 
     def ours(self, number: float) -> str:
-        """A number in its written form."""
+        """A measured number as text."""
         return f"{number:{self.style}}"
 
 
@@ -91,7 +91,7 @@ class Experiment:
 
 
 class Result(NamedTuple):
-    """A finished experiment, and the measurement for each of its claims."""
+    """A finished experiment, with a measurement for each claim."""
 
     experiment: Experiment
     outcome: Outcome
@@ -99,12 +99,12 @@ class Result(NamedTuple):
 
     @property
     def missed(self) -> list[tuple[Claim, float]]:
-        """The claims that are not met."""
+        """The claims that the measurements do not meet."""
         return [(claim, x) for claim, x in self.findings if claim.verdict(x) == "MISSED"]
 
 
 def _claim(entry: dict[str, Any]) -> Claim:
-    """A claim of the table."""
+    """Make a claim from an entry of the table."""
     if "exactly" in entry:
         entry["low"] = entry["high"] = entry.pop("exactly")
     return Claim(**entry)

@@ -1,11 +1,11 @@
-"""The paper's Fig. 10: the region of the mouth, static and refined, compared with a dense mesh.
+"""The paper's Fig. 10: the mouth, static and refined, compared with a dense mesh.
 
 Kähler, Haber, Seidel 2003, section 5: "The rendered mesh is visibly smoothed, reducing shading
-artifacts and improving the silhouette of the opened mouth." A smooth surface need not be true. So
-the built-in head with 16 times the triangles is moved by the same muscles, drawn in the same way,
-and taken as the truth. Below a picture is its error, in levels of 255 and in pixels around the
-opening between the lips. The row under the smooth pictures shows this opening dark, and red where
-it differs from that of the dense mesh.
+artifacts and improving the silhouette of the opened mouth." A smooth surface is not always a true
+one. So the built-in head with 16 times the triangles is moved by the same muscles, drawn in the
+same way, and taken as the truth. Below each picture is its error, in levels of 255 and in wrong
+pixels of the opening between the lips. The row under the smooth pictures shows this opening dark,
+with pixels in red that differ from the dense mesh.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ GREEN = np.array([0.0, 1.0, 0.0], np.float32)
 
 @dataclass(frozen=True)
 class Variant:
-    """One way to refine a mesh, for a row or column of a figure."""
+    """One way to refine a mesh, as a row or column of a figure."""
 
     title: str
     refiner: str
     options: Mapping[str, Any] = field(default_factory=dict)
-    splits_borders: bool = False  # by `displacement` and a criterion of our own
+    splits_borders: bool = False  # by `displacement` and `BorderTurn`
 
 
 STATIC, PAPER, CUBIC, DETAIL = VARIANTS = (
@@ -61,23 +61,23 @@ class Viewpoint:
 
     expression: str
     view: str  # yaw, pitch [degrees], zoom, around the lips
-    aside: tuple[float, float]  # motion of the camera right and up, in heights of the frame
+    aside: tuple[float, float]  # shift of the camera to the right and up, in heights of the frame
 
 
 @dataclass(frozen=True)
 class Cell(Shot):
-    """The picture of one expression by one variant."""
+    """The picture of one expression in one variant."""
 
     title: str
     kinds: Unsigned8  # skin, mouth, background, FINER times as fine, (H, W)
 
     def wrong(self, truth: Cell) -> Flags:
-        """Fine pixels of the mouth's opening here or in the truth, but not in both."""
+        """Flags of fine pixels in which only one of both pictures shows the mouth's opening."""
         return np.asarray((self.kinds == MOUTH) != (truth.kinds == MOUTH))
 
     def opening(self, truth: Cell) -> Image:
         """The picture of the opening."""
-        # Colours by kind
+        # by kind: skin, mouth, background
         opening_colours = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)
         picture = opening_colours[self.kinds]
         wrong_colour = (225, 30, 30)
@@ -86,7 +86,7 @@ class Cell(Shot):
 
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
-    """Reduction of the error of mouths by the paper's rule and by interpolating ones."""
+    """Error at the mouth by the paper's rule and the cubic scheme, over the static mesh's error."""
     changed = []
     left = list[float]()
     outline = list[float]()
@@ -125,10 +125,10 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
 
 
 def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
-    """Every expression in every variant; the cell of the dense mesh is the last of each."""
+    """Draw every expression in every variant; the last cell of an expression is the dense mesh."""
     scene = FaceScene()
     head = assets.load("head")
-    level = 2  # of the finer head: 16 times the triangles
+    level = 2  # the finer head with 16 times the triangles
     fine = head.finer(level)
     simulation = fine_simulation(head, fine)
     refiners = []
@@ -143,7 +143,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append(("dense mesh", dense, len(fine.vertices)))
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
-        parts_at_lids = "lashes", "wet_edges"  # not near lips
+        parts_at_lids = "lashes", "wet_edges"  # far from the lips
         kinds_style = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
         viewpoints = (
             Viewpoint("yawn", "-24,-4,5.2", (-0.1, 0.0)),
@@ -176,7 +176,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
 
 
 def _smaller(image: Image) -> Image:
-    """A picture at its final size."""
+    """Reduce a picture FINER times, to its final size."""
     height = image.shape[0] // FINER
     width = image.shape[1] // FINER
     return np.asarray(PIL.Image.fromarray(image).resize((width, height), LANCZOS))

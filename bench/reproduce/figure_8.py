@@ -1,9 +1,9 @@
 """The paper's Fig. 8: long, thin subtriangles lie along the folds of skin.
 
-A fold bends across its direction and hardly along it. In a triangle this is the direction of least
-curvature, which follows from the turn of normals along the triangle's edges. The paper's claim is
-true if subtriangles are longer than their triangles, and nearer to this direction. The measurements
-are below each picture.
+A fold bends across its direction and hardly along it. So in a triangle, the fold's direction is
+that of least curvature; it is computed from the change of normals along the triangle's edges. The
+paper's claim holds if subtriangles are thinner than their triangles, and more closely aligned with
+this direction. The measurements are printed below each picture.
 
 Source: Kähler, Haber, Seidel 2003, section 5 and Fig. 8; Rusinkiewicz 2004, "Estimating curvatures
 and their derivatives on triangle meshes", for the curvature of a triangle.
@@ -31,7 +31,7 @@ Faces = npt.NDArray[np.int32]
 
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
-    """Angles of subtriangles to folds, and their thinness, against those of triangles.
+    """Compare subtriangles with their triangles: the angle to the fold, and the smallest angle.
 
     Pictures show the mesh, the mesh refined by the paper's rule, and the folds.
     """
@@ -67,31 +67,31 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
 
 
 def lines_along(scene: Scene) -> list[Points]:
-    """A short line along the fold in each triangle of a fold, a little above it."""
+    """For each triangle in a fold, a short line along the fold, slightly above the surface."""
     corners = scene.positions[scene.faces]
     directions, is_fold = find_folds(scene.faces, scene.positions)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     unit = float(np.sqrt(np.median(np.linalg.norm(normals, axis=1))))
     normals = unit_vectors(normals)
-    lift = 0.1  # mean edges that lines float over the surface
+    lift = 0.1  # height of lines over the surface, in mean edge lengths
     middles = corners.mean(axis=1) + lift * unit * normals
-    line_length = 0.5  # mean edges, of a line along a fold
+    line_length = 0.5  # in mean edge lengths
     half = 0.5 * line_length * unit * directions
     return list(np.stack([middles - half, middles + half], axis=1)[is_fold])
 
 
 class Shapes(NamedTuple):
-    """The triangles of folds, as means weighted by area."""
+    """Means over triangles in folds, weighted by area."""
 
-    smallest_angle: float  # [degrees] of a triangle's three
-    off_fold: float  # [degrees] from the long axis to the fold; chance gives 45
+    smallest_angle: float  # [degrees]
+    off_fold: float  # [degrees] from the long axis to the fold; 45 for random directions
 
     def __str__(self) -> str:
         return f"smallest angle {self.smallest_angle:.0f}°, {self.off_fold:.0f}° off the fold"
 
 
 def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
-    """Measure split triangles in folds: those of the mesh, and the refined ones.
+    """Measure the split triangles in folds, and the subtriangles that replace them.
 
     This refines `positions` (V, 3) again.
     """
@@ -105,7 +105,7 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
 
 
 def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
-    """The direction of least curvature in each triangle (F, 3), and flags of triangles in folds."""
+    """Direction of least curvature of each triangle (F, 3), and flags of triangles in folds."""
     static = refine.create("none", faces, positions).refine(positions)
     corners = static.positions.astype(np.float64)[static.triangles]
     normals = static.normals.astype(np.float64)[static.triangles]
@@ -114,7 +114,7 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     first_edge = edges[:, 0]
     across = np.cross(first_edge, edges[:, 1])
     areas = np.linalg.norm(across, axis=1) / 2.0
-    axes = np.stack([first_edge, np.cross(across, first_edge)], axis=2)  # of the triangle's plane
+    axes = np.stack([first_edge, np.cross(across, first_edge)], axis=2)  # in the triangle's plane
     lengths = np.linalg.norm(axes, axis=1, keepdims=True)
     axes /= np.maximum(lengths, 1e-12)
     curvatures = _fitted_curvatures(edges @ axes, turns @ axes)
@@ -125,19 +125,19 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     directions = np.einsum("fki,fi->fk", axes, least)
     low = sizes.min(axis=1)
     high = sizes.max(axis=1)
-    bent_angle = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
+    bent_angle = 0.2  # [rad] least turn of the normal across a triangle in a fold
     is_bent = high * np.sqrt(2.0 * areas) > bent_angle
-    # Largest ratio of the curvature along to that across: with more, a triangle is in a dome.
+    # Largest ratio of least to greatest curvature; a triangle with a larger ratio lies on a dome.
     along_share = 0.4
     is_straight = low < along_share * high
     return directions, is_bent & is_straight
 
 
 def _fitted_curvatures(edges: Points, turns: Points) -> Points:
-    """Curvature of triangles in their planes, symmetric, shape (F, 2, 2), by least squares.
+    """Fit each triangle's curvature matrix by least squares: symmetric, shape (F, 2, 2).
 
-    Curvature (a b, b c) turns the normal along an edge (u, v) by (a u + b v, b u + c v). edges,
-    turns: vectors in the plane, shape (F, 3, 2).
+    With curvature (a b, b c), the normal changes by (a u + b v, b u + c v) along an edge (u, v).
+    edges, turns: edges and changes of normals in the triangle's plane, shape (F, 3, 2).
     """
     u = edges[:, :, 0]
     v = edges[:, :, 1]
@@ -153,7 +153,7 @@ def _fitted_curvatures(edges: Points, turns: Points) -> Points:
 
 
 def _shapes(corners: Points, directions: Points) -> Shapes:
-    """Measure triangles with these corners (n, 3, 3) against directions (n, 3)."""
+    """Measure triangles with corners (n, 3, 3) against the fold directions (n, 3)."""
     edges = np.roll(corners, -1, axis=1) - corners
     areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
     units = unit_vectors(edges)

@@ -1,7 +1,8 @@
 """The paper's Fig. 9: the plane under a strong sine, static and refined, beside the true sine.
 
-Below each picture is its difference from the true one, in shading and in outline. The true one is a
-mesh so dense that no triangle shows, with the normals of the sine itself; no refiner knows it.
+Below each picture is its difference from the true picture, in shading and in outline. The true
+picture shows a mesh so dense that no triangle is visible, with the exact normals of the sine;
+refiners do not use it.
 
 `risorius reproduce figure9` draws it.
 Kähler, Haber, Seidel 2003, section 5.
@@ -27,7 +28,8 @@ BACKGROUND = 250.0  # grey level: almost white, lighter than any part of the pla
 
 
 def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
-    """Difference of each variant's shading from that of the sine, as a mean over its columns.
+    """Difference of each variant's shading from the true sine's, averaged over the figure's
+    columns.
 
     Rows are variants of each shading, with the true sine last; columns are moments.
     """
@@ -68,14 +70,14 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
 
 
 class Waving:
-    """The plane in the frame of the figure, refined and true."""
+    """Draws the waving plane of the figure, refined and true."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas
         self._scene = PlaneScene()
-        view = "28,-30,0.796"  # from here the dark underside is never visible
+        view = "28,-30,0.796"  # from this view the dark underside is never visible
         self._camera = camera_for(self._scene, view)
-        # Number of cells of the true sine in each cell of the plane, each way: smaller than pixels.
+        # Cells of the true sine per cell of the plane in each direction: smaller than pixels.
         fineness = 24
         self._dense = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
 
@@ -89,14 +91,14 @@ class Waving:
         return image, self._canvas.mesh_of(refiner).triangle_count
 
     def true_image(self, phase: float) -> Image:
-        """The picture of the sine itself; all shadings are equal on such small triangles."""
+        """The picture of the true sine; with such small triangles, all shadings look the same."""
         vertices, faces = self._dense
         positions, normals = self._wave(phase).waved(vertices)
         drawing = Drawing(self._camera, GOURAUD)
         return self._canvas.draw_surface(positions, normals, faces, drawing)
 
     def _wave(self, phase: float) -> PlaneScene:
-        """The scene at a moment of the full wave."""
+        """The scene at a phase of the full wave."""
         self._scene.pose({"amplitude": 1.0, "phase": phase})
         self._scene.step(1.0 / 30.0)
         return self._scene
@@ -111,7 +113,7 @@ def levels_apart(image: Image, truth: Image) -> float:
 
 
 def outline_apart(image: Image, truth: Image) -> float:
-    """Pixels that only one of both pictures covers, as a share of the true surface's pixels."""
+    """Number of pixels covered in only one of two pictures, over the true surface's pixels."""
     shows = _grey(image) < BACKGROUND
     true_shows = _grey(truth) < BACKGROUND
     return float((shows != true_shows).sum() / true_shows.sum())

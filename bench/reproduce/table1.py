@@ -1,16 +1,17 @@
 """Table 1 of the paper beside ours: `risorius reproduce table1`.
 
-Kähler, Haber, Seidel 2003, section 5: triangles of the static mesh, the most that refinement makes
-of them during the animation, the time to render each, and c_rt, the factor by which the time per
-triangle grows. The time of "the rendering code" in the paper is here that of refinement (or of
-passing the mesh on), upload and drawing, until OpenGL has finished.
+Kähler, Haber, Seidel 2003, section 5: the number of triangles of the static mesh, the largest
+number of triangles after refinement during the animation, the time to render each mesh, and c_rt,
+the factor by which the time per triangle grows. The paper times "the rendering code"; here the time
+covers refinement (or passing the mesh on), upload and drawing, until OpenGL has finished.
 
-In software OpenGL most of this time is for pixels, which do not depend on the number of triangles.
-So the same is reported for a picture of a few pixels, and for refinement alone, which for a mesh as
-small as the plane is mostly the fixed cost of a call from Python.
+In software OpenGL most of this time is spent on pixels, whose number does not depend on the number
+of triangles. So two more times are reported: one with a picture of a few pixels, and one for
+refinement alone. For a mesh as small as the plane, refinement alone is mostly the fixed cost of a
+call from Python.
 
-Static and refined meshes are timed in pairs. A refined mesh has more triangles, so a smaller time
-than the static one's, c_rt < static / refined triangles, is noise.
+Static and refined meshes are timed in pairs. A refined mesh has more triangles; so if it takes less
+time than the static mesh, that is, if c_rt < static / refined triangles, this is noise.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 
 SIZE = (1280, 720)  # [pixels] of the picture
-SMALL_SIZE = (64, 36)  # pixels cost almost nothing
+SMALL_SIZE = (64, 36)  # so few pixels take almost no time
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
 ALONE = "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, ALONE)
@@ -60,7 +61,7 @@ class Row:
 
     @classmethod
     def of(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
-        """A row of ours. seconds: times of static and refined in each round, shape (rounds, 2)."""
+        """Make a row. seconds: times of static and refined mesh in each round, (rounds, 2)."""
         ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
         low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
         still, refined = (1e3 * np.median(seconds, axis=0)).tolist()
@@ -74,7 +75,7 @@ PAPER = {
 
 
 def _measured(scene: Scene, rounds: int) -> list[Row]:
-    """Time the scene's fullest frame in every way."""
+    """Time the frame with most triangles: in a large and a tiny picture, and without drawing."""
     static = refine.create("none", scene.faces, scene.rest_positions)
     options = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
     dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **options)
@@ -92,13 +93,13 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
         with Canvas(size) as canvas:
             seconds[way] = timed(partial(draw, canvas), rounds)
-    quick_rounds = 10  # rounds of a way without drawing, per round of others
+    quick_rounds = 10  # rounds without drawing, per round with drawing
     seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
-    """The frame of the scene's own script with the most triangles, and their number."""
+    """Positions (V, 3) of the frame with most triangles in the scene's own script, and their number."""
     best = -1
     fullest = scene.positions
     script = script_for(None, scene.name)
@@ -115,7 +116,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
 
 
 def outcome(*, rounds: int) -> Outcome:
-    """Measure our rows for face and plane, beside the paper's."""
+    """Measure our rows for the face and the plane, and print them beside the paper's."""
     with Canvas(SMALL_SIZE) as canvas:
         renderer = canvas.surface.gl.info["GL_RENDERER"]
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
