@@ -99,7 +99,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
 
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
-    """Positions (V, 3) of the frame with most triangles in the scene's own script, and their number."""
+    """Positions (V, 3) of the frame with most triangles in the scene's script, and their number."""
     best = -1
     fullest = scene.positions
     script = script_for(None, scene.name)
