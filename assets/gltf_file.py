@@ -70,7 +70,7 @@ class GltfFile:
                 )
 
     def values(self, number: int) -> npt.NDArray[Any]:
-        """The rows of an accessor, shape (count, width); shares and floats as float64."""
+        """Return an accessor's rows (count, width); normalized integers and floats as float64."""
         accessor = self.document.accessors[number]
         kind = np.dtype(COMPONENTS[accessor.componentType])
         widths = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}

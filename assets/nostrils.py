@@ -1,4 +1,4 @@
-"""Light in the nostrils: walls of flesh scatter it, so they are not black from below."""
+"""Brightens the nostrils in the map of ambient light, because flesh scatters light."""
 
 from __future__ import annotations
 

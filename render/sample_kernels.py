@@ -234,7 +234,7 @@ def _edge(a: _Corner, b: _Corner) -> _Linear:
 
 @njit
 def _at(edge: _Linear, x: float, y: float) -> float:
-    """The function of an edge at a place."""
+    """Evaluate an edge function a x + b y + c at a place."""
     return edge[0] * x + edge[1] * y + edge[2]
 
 

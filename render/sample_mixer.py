@@ -29,7 +29,7 @@ class Mixer(Protocol):
 
 
 class SampleMixer:
-    """Smooths the edges on one target, which has samples."""
+    """Smooths edges in one render target with several samples a pixel."""
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self.target = target

@@ -95,7 +95,9 @@ def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
 
 
 def _basis(toward: Floats64) -> Floats64:
-    """Rows right, up, and away from the light, for a camera at the light."""
+    """Return the axes of a camera at the light, as rows: right, up, away from the light.
+
+    toward: direction to the light."""
     toward = toward / np.linalg.norm(toward)
     above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP_HEIGHT else (0.0, 1.0, 0.0)
     right = np.cross(above, toward)

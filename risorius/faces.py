@@ -40,10 +40,12 @@ class Faces:
         return len(self.rows)
 
     def __getitem__(self, number: int) -> dict[str, npt.NDArray[Any]]:
-        """A sample.
+        """Return a sample as a dictionary of arrays.
 
-        It has image (3, H, W) 0..1; units (12,) 0..1; pixels (70, 2) and visible (70,) of
-        landmarks; and classes (H, W), 255 = ignore, if the set has them.
+        - `image`: (3, H, W), 0..1
+        - `units`: action units, (12,), 0..1
+        - `pixels` and `visible`: landmarks, (70, 2) and (70,)
+        - `classes`: (H, W), 255 = ignore, if the set has them
         """
         files = self.files(number)
         labels = json.loads(files["json"])

@@ -8,7 +8,7 @@ A muscle does not reach a new activation at once: each control follows its wante
 critically damped oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly
 for every tick, so it is stable for any tick length and independent of the frame rate.
 
-Source: time constants of facial muscle; on this model 45 rad/s gives t50 = 37 ms and t90 = 86 ms.
+Own; 45 rad/s gives t50 = 37 ms and t90 = 86 ms on this model.
 """
 
 from __future__ import annotations

@@ -139,7 +139,7 @@ def test_a_head_of_a_file_is_drawn(head, landmarks, tmp_path):
 
 
 def test_glb_is_read_as_its_accessors_say(tmp_path):
-    """Normalized, transformed and quantized attributes give the same vertices and picture."""
+    """One mesh, stored normalized, transformed and quantized, has nearly the same picture."""
     pictures = [
         picture_of(f"b_glb_{kind}.glb", POINTS, tmp_path / f"{kind}.png")
         for kind in ("texcoord_u16_normalized", "texture_transform", "quantized_positions")

@@ -35,7 +35,9 @@ def test_triangles_of_table_1():
     """Two pages have the same largest triangle counts of face and plane as `reproduce table1`."""
     values = table1.outcome(rounds=1).values
     ours = [values["face, most triangles"], values["plane, most triangles"]]
-    on_index = numbers_of(DOCS / "index.md", r"ours (\d+) and (\d+) \(`risorius reproduce table1`")
+    on_index = numbers_of(
+        DOCS / "index.md", r"here they are (\d+) and (\d+)\s+\(`risorius reproduce table1`"
+    )
     assert on_index == approx(ours, rel=0.01)
     on_refinement = numbers_of(DOCS / "refinement.md", r"today's makes (\d+) triangles")
     assert on_refinement == approx(ours[:1], rel=0.01)

@@ -98,7 +98,7 @@ def _do(job: Job, send: Send) -> None:
 
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
-    """Summarize all lines in one sentence. seconds: the duration of the whole batch."""
+    """Summarize the results of all commands in one sentence. seconds: the batch's duration."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
     outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())

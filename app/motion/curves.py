@@ -5,7 +5,7 @@ layer's controls add up, so it is a bounded least squares problem in each frame:
 
     minimise |shares x - activations|^2,    0 <= x <= the controls' limits
 
-Source: Stark and Parker 1995, "Bounded-variable least-squares", which scipy solves.
+Source: Stark and Parker 1995, "Bounded-variable least-squares", as implemented in scipy.
 """
 
 from __future__ import annotations

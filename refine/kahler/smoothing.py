@@ -167,10 +167,11 @@ def write_mean_normal(rows: Floats32, p: np.uint32, q: np.uint32, row: np.uint32
 def geomorph_vertices(
     ends: Unsigned32, edges: Unsigned32, geomorph: Floats32, vertex_geomorph: Floats32
 ) -> None:
-    """Write the geomorph weight of each vertex, (V,): the largest of its edges, 0 without a split.
+    """Write the geomorph weight of each vertex, (V,): the largest of its split edges, or 0.
 
-    `ends`: of edges, in the first two columns of (E, 4); `edges`: those that are split, shape (N,);
-    `geomorph`: of edges, shape (E,).
+    `ends`: the first two columns hold the vertices of each edge, (E, 4). `edges`: numbers of the
+    split edges, (N,). `geomorph`: the weight of each edge, (E,). Weights are written to
+    `vertex_geomorph`.
     """
     vertex_geomorph[:] = ZERO
     for e in edges:

@@ -1,4 +1,4 @@
-"""Light in eyes and mouth in a picture."""
+"""Lids and lips shade eyes and teeth in a picture."""
 
 import numpy as np
 from pytest import approx

@@ -57,7 +57,7 @@ def script_of(path):
 
 @pytest.mark.parametrize("name", ["voice.wav", "sounds/voice.wav", "C:\\takes\\voice.wav", "full"])
 def test_the_sound_of_rhubarb(name, tmp_path):
-    """The analysed sound file is played, from its old place or beside the recording."""
+    """The sound file that Rhubarb names is found at its path, or beside the recording."""
     sound = tmp_path / ("sounds/voice.wav" if name == "sounds/voice.wav" else "voice.wav")
     sound.parent.mkdir(exist_ok=True)
     sound.write_bytes(b"RIFF")

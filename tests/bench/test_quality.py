@@ -1,4 +1,4 @@
-"""The benchmark of quality: its test meshes and its errors."""
+"""The benchmark `bench quality`: its meshes, and its measures of error."""
 
 import numpy as np
 import pytest

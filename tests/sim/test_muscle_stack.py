@@ -55,9 +55,9 @@ def test_only_muscles_beneath_move_a_muscle(head):
 
 
 def test_carrying_is_the_formula(simulation, model, state):
-    """Each point moves by shares of the lines beneath, as in plain numpy.
+    """Points of a muscle's line move with weighted motions of the lines below, as in numpy.
 
-    Their sum is at most 1.
+    The weights of a point sum to at most 1.
     """
     muscles = model.muscles
     pose = model.skull.mandible_motion(0.5, 0.3, 0.2)

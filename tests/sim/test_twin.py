@@ -208,7 +208,9 @@ def test_skin_hangs_on_sphincters_by_the_formula(placed, model):
 
 
 def test_fibres_contract_along_their_own_arc(stirred, model, state):
-    """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
+    """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw.
+
+    f: the arc length that stays; c: the contraction; a: the activation."""
     mandible = stirred.bones.mandible
     bundle = model.muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))

@@ -123,7 +123,7 @@ class CameraMouse:
 
 
 class Mouse(CameraMouse):
-    """The mouse on a face: it drags the skin, and the line of a comparison."""
+    """The mouse on a face: it drags the skin, or the line that divides two compared pictures."""
 
     skin_drag: SkinDrag | None = None
 

@@ -182,7 +182,7 @@ class Session:
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
-        """Go to a time of the script with its pose there; the message names released controls."""
+        """Show the script's pose at a time. The message names the controls that this releases."""
         self._refuse_while_recording()
         line = self.let_go()
         self._go_to(time)

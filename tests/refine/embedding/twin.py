@@ -68,7 +68,7 @@ class Twin:
 
     @staticmethod
     def _axes(fan: Fan, points: Points) -> tuple[Points, Points]:
-        """The normal, and both directions as the triangles move them, (3, 2)."""
+        """Return the vertex's normal, and its tangents at rest, moved by the triangles, (3, 2)."""
         edges = edges_of(points, fan.numbers)
         normal = unit(fan.weights @ np.cross(edges[:, :, 0], edges[:, :, 1]))
         moves = edges @ np.linalg.pinv(fan.edges)  # linear maps of the triangles' planes
