@@ -36,10 +36,10 @@ def test_triangles_of_table_1():
     values = table1.outcome(rounds=1).values
     ours = [values["face, most triangles"], values["plane, most triangles"]]
     on_index = numbers_of(
-        DOCS / "index.md", r"here they are (\d+) and (\d+)\s+\(`risorius reproduce table1`"
+        DOCS / "index.md", r"here they are (\d+) and (\d+) \(`risorius reproduce table1`"
     )
     assert on_index == approx(ours, rel=0.01)
-    on_refinement = numbers_of(DOCS / "refinement.md", r"today's makes (\d+) triangles")
+    on_refinement = numbers_of(DOCS / "refinement.md", r"today the face has (\d+) triangles")
     assert on_refinement == approx(ours[:1], rel=0.01)
 
 
