@@ -1,18 +1,18 @@
-"""The 68 landmarks of a head: their file, and a test of their order.
+"""Read and write the file with the 68 landmarks of a head, and check their order.
 
-The file is JSON, vertex numbers or coordinates.
+The file is JSON and holds vertex numbers or coordinates.
 
     {"landmarks": [1225, 1888, ...]}              vertex numbers, counted from 0
     {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in its own unit
 
-The key may have any name, other keys are ignored, and a list without a key suffices. While a head
-is being marked, missing landmarks are null, and "guessed" has the numbers of landmarks that nobody
-has moved. A group in a wrong order would tear the face, so the order is tested.
+The key may have any name, other keys are ignored, and a list without a key suffices. In an
+unfinished file, missing landmarks are null, and "guessed" lists the numbers of guessed landmarks
+that the user has not moved. A group in a wrong order would tear the face, so the order is tested.
 
-A group in the right order resembles the built-in group at least as much as in the best fitting
-order q. For points p and template points t, sum p_i (t_i - t_q(i)) is then about 0. A shift of the
-whole group does not change this sum. Divided by its value for p = t, it is near -1 for a face whose
-group has the order q.
+The test compares the given order of a group with the order q that fits the built-in group best. For
+points p and template points t, the sum of p_i (t_i - t_q(i)) is about 0 if the given order is
+right. A shift of the whole group does not change this sum. Divided by its value for p = t, it is
+near -1 if the group has the order q.
 
 Source: Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (the order of the points).
 """
@@ -38,7 +38,7 @@ from .mesh_validation import SkinPiece, path_lengths, pieces_of, with_seams_join
 from .warp import nearest_on
 
 COUNT = 68
-KEY = "landmarks"  # key of the list, if there are several
+KEY = "landmarks"  # key of the landmarks, if the file has several lists
 GUESSED = "guessed"
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
@@ -46,12 +46,12 @@ OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
 
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
-    """The 68 landmarks of a mesh: vertex numbers (68,), int32, and points (68, 3) [its unit].
+    """Read landmarks: vertex numbers (68,), int32, and points (68, 3) [unit of the mesh] or None.
 
-    If the file holds points, the numbers are the nearest vertices; else there are no points.
+    If the file holds points, the numbers are those of the nearest vertices.
 
-    Raises AssetError for a file that is missing, too long or not JSON, another count, numbers out
-    of range, and a point off the mesh.
+    Raises AssetError for a file that is missing, too long or not JSON, for another count of
+    landmarks, for a number out of range, and for a point off the mesh.
     """
     try:
         found = _all_in(_document(path))
@@ -62,7 +62,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
             )
         if _are_numbers(found):
             numbers = _numbers(found, len(mesh.vertices))
-            # Triangles always name the same one of the vertices in one place.
+            # Of several vertices in one place, triangles use only one.
             return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
@@ -71,7 +71,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
 
 
 def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[int]]:
-    """Points (3,) [unit of the mesh] of the marked landmarks, and numbers of the guessed ones.
+    """Read the points (3,) [unit of the mesh] of marked landmarks, and the numbers of guessed ones.
 
     Raises AssetError as `read_landmarks` does, but not for missing landmarks.
     """
@@ -94,17 +94,17 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
 
 
 def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
-    """The text of a landmark file with these points by their numbers; missing ones are null."""
+    """Return the text of a landmark file; points: number -> place, and null for missing numbers."""
     rows = ",\n    ".join(json.dumps(places.get(number)) for number in range(COUNT))
     return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
 
 
 class UnfinishedError(AssetError):
-    """Landmarks are not marked yet; a user can mark them in the window."""
+    """Landmarks are missing; a user can mark them in the window."""
 
 
 class MisfitError(UnfinishedError):
-    """The landmarks of a known topology do not fit the head; marked ones may fit."""
+    """The landmarks of a known topology do not fit the head; those that a user marks may fit."""
 
 
 def _document(path: Path) -> Any:
@@ -116,7 +116,7 @@ def _document(path: Path) -> Any:
 
 
 def _all_in(document: Any) -> list[Any]:
-    """The 68 entries: the document itself, its list called KEY, or its first list of this many."""
+    """The 68 entries: the document itself, its list with the key KEY, or its first list of 68."""
     entries = [document]
     if isinstance(document, dict):
         entries = [document[KEY]] if KEY in document else list(document.values())
@@ -154,15 +154,15 @@ def _points(found: list[Any]) -> Floats64:
 
 
 def _read_each(kind: Any, found: list[Any]) -> list[Any]:
-    """Entries of one kind; ValueError names a wrong landmark, counted from 0."""
+    """Entries, checked to be of one kind; ValueError names a wrong landmark, counted from 0."""
     named_entries = {f"landmark {place}": entry for place, entry in enumerate(found)}
     return list(read(dict[str, kind], named_entries, "").values())
 
 
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
-    """The vertices nearest to points; each point must be near the mesh."""
+    """The vertices nearest to points; AssetError if a point lies off the mesh."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    most_share = 0.05  # of the distance of the outer eye corners: more is a mistake
+    most_share = 0.05  # of the distance between the outer eye corners; more is a mistake
     outer_eye_corners = [36, 45]
     allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:
@@ -171,7 +171,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): give unit and axes of the mesh"
         )
-    # At an eye a lash may have been marked, or the ball: most points lie on the skin.
+    # A point at an eye may lie on a lash or on the eyeball, but most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]
     skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
     if _triangles_at(points, mesh, skin)[1].max() > allowed:
@@ -180,7 +180,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     joined, _ = with_seams_joined(mesh.vertices, skin, numbers)
     if joined is skin:
         return numbers
-    return nearest_vertices(points, mesh.vertices, joined)  # along the skin, across seams
+    return nearest_vertices(points, mesh.vertices, joined)  # skin paths cross the joined seams
 
 
 def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any, Floats64]:
@@ -192,9 +192,9 @@ def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any,
 def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) -> Integers32:
     """The vertices nearest to the points of landmarks, shape (68,).
 
-    Where lips touch, the nearest vertex may be on the other lip. So a point of the inner lips goes
-    to the nearest vertex on its own lip: the way along the skin to the outside of its own lip is
-    shorter.
+    Where lips touch, the nearest vertex may be on the other lip. So a landmark of an inner lip
+    takes the nearest vertex on its own lip. The shorter path along the skin to the outer lips shows
+    which lip a vertex is on.
     """
     used = np.unique(faces)
     numbers: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
@@ -214,7 +214,7 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
 
 @dataclass(frozen=True)
 class Group:
-    """Landmarks that follow each other."""
+    """A group of consecutive landmarks."""
 
     name: str
     first: int
@@ -223,7 +223,7 @@ class Group:
 
     @property
     def complaint(self) -> str:
-        """The message about a group in a wrong order."""
+        """The error message for a group in a wrong order."""
         return (
             f"landmarks {self.first} to {self.first + self.count - 1}, the {self.name}, are not in "
             f"their order; right is: {self.right_order} (the subject's own right and left)"
@@ -246,9 +246,9 @@ GROUPS = (
 
 
 def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
-    """Groups that would fit better in another order; both (68, 3), in the face space [mm].
+    """Groups that would fit better in another order; points and template: (68, 3) [mm].
 
-    The order of inner lips in a closed mouth follows from the skin alone: `check_lips`.
+    In a closed mouth only paths along the skin tell the inner lips apart, see `check_lips`.
     """
     return [group for group in GROUPS if _is_disordered(group, points, template)]
 
@@ -259,9 +259,9 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
-    least_difference = 3.0  # [mm] between mean places in both orders: less looks alike
+    least_difference = 3.0  # [mm] between the places in both orders; less makes no difference
     is_clear = size > 0.5 * group.count * least_difference**2
-    disordered_correlation = -0.3  # well below 0: points in order must pass
+    disordered_correlation = -0.3  # well below 0, so that points in the right order pass
     return is_clear and float((given * moved).sum()) < disordered_correlation * size
 
 

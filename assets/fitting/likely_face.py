@@ -1,12 +1,13 @@
-"""The person of the program's own space most similar to a face with few known points.
+"""Find the person most similar to a mesh with few known points.
 
-The person's shape and the place of the mesh are fitted together, to three kinds of data:
-the known points, with a large weight; distances of the skin around the landmarks from the planes of
-the mesh's surface; and the weights of modes, which are 0 for the built-in head.
+A person is the built-in head plus a weighted sum of modes. The weights and the place of the mesh
+are solved for together. Three errors are
+minimised: distances of the known points, with a large weight; distances of the skin around the
+landmarks from planes at the mesh; and the weights, which are 0 for the built-in head.
 
 Source: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable
-model", section 3 (modes fitted by nearest points, with a prior).
-Differs from it: the planes are those of the person, and there are no expressions.
+model", section 3 (modes fitted by nearest points, with a prior). Differs from it: the planes have
+the normals of the person, and there are no expressions.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ from ..data_files import read_arrays
 from ..model import Head
 from .warp import Similarity, nearest_on
 
-FARTHEST_MATCH = 18.0  # [mm]: a point of a face finds no place farther off on a mesh
+FARTHEST_MATCH = 18.0  # [mm] between a point of the person and its place on the mesh
 
 
 @dataclass
 class LikelyFace:
-    """A person who is fitted to a mesh.
+    """A person that is fitted to a mesh.
 
-    head: the one with the person's topology. mesh: vertices of the mesh in the person's space [mm],
-        (V, 3).
-    faces: those of the mesh's skin. numbers: known landmarks. given: their places [mm].
-    skin: vertices of the person that are laid on the mesh.
+    head: the built-in head, which has the topology of all persons.
+    mesh: vertices of the mesh in the person's space [mm], (V, 3).
+    faces: triangles of the mesh's skin. numbers: known landmarks. given: their places [mm].
+    skin: vertices of the person that are fitted to the mesh.
     """
 
     head: Head
@@ -47,7 +48,7 @@ class LikelyFace:
         modes = read_arrays(self.head.beside("_modes.npz"))["modes"]
         self._modes = modes.astype(np.float64)
         self._weights = np.zeros(len(self._modes))
-        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))  # its motion since the beginning
+        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))  # all motion of the mesh so far
 
     @property
     def vertices(self) -> Floats64:
@@ -55,24 +56,24 @@ class LikelyFace:
         return self.head.vertices + np.tensordot(self._weights, self._modes, 1)
 
     def fit(self) -> None:
-        """Fit it, first by the known points alone."""
+        """Fit the person, first by the known points alone."""
         few_steps = 3
         steps = 8  # afterwards a median guess moves by less than 0.1 mm
         for step in range(steps):
             self._step(has_surface=step >= few_steps)
 
     def _step(self, *, has_surface: bool) -> None:
-        """Solve once for weights, and for a small motion of the mesh: shift, turn, growth."""
+        """Solve once for the weights and for a small motion of the mesh (shift, turn, growth)."""
         vertices = self.vertices
         count = len(self._modes)
         known = self.head.landmarks[self.numbers]
-        pointing = 0.7  # [mm] of error in known points
+        pointing = 0.7  # [mm] usual error of known points
         ways = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
         rows = [np.hstack([ways, -_motions(self.given)]) / pointing]
         right = [(self.given - vertices[known]).ravel() / pointing]
         rows.append(np.eye(count, count + 7))
         right.append(-self._weights)
-        # Of one step: [mm], [radians], share.
+        # Usual sizes of a motion in one step: shift [mm], turn [radians], growth [share].
         reach = np.concatenate([np.full(3, 20.0), np.full(4, 0.1)])
         rows.append(np.eye(7, count + 7, count) / reach[:, None])
         right.append(np.zeros(7))
@@ -87,7 +88,7 @@ class LikelyFace:
         self._move(Similarity(1.0 + float(growth), rotation, shift))
 
     def _planes(self, vertices: Floats64) -> tuple[Floats64, Floats64]:
-        """Equations that bring skin to planes at the nearest places of the mesh."""
+        """Equations that move the skin to planes at the nearest places of the mesh."""
         normals = vertex_normals(vertices, self.head.faces)[self.skin]
         points = vertices[self.skin]
         feet = nearest_on(points, normals, self.mesh, self.faces).interpolate(self.mesh)
@@ -103,10 +104,10 @@ class LikelyFace:
             ]
         )
         off = np.einsum("ni,ni->n", feet - points[is_near], normals)
-        doubtful = 6.0  # [mm] of distance at which a place counts less
+        doubtful = 6.0  # [mm] distance from which a place counts less
         weight = 1.0 / np.sqrt(1.0 + (distance[is_near] / doubtful) ** 2)
-        rough = 2.5  # [mm] between a face and the space of persons
-        independent = 60.0  # places that count as independent; neighbours are alike
+        rough = 2.5  # [mm] usual distance between a face and the nearest person
+        independent = 60.0  # effective count of places, as neighbours are alike
         weight /= rough * np.sqrt(max(len(feet) / independent, 1.0))
         return weight[:, None] * rows, weight * off
 

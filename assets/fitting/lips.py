@@ -1,8 +1,8 @@
-"""Joined lips of a mesh, which must be two for muscles to part them.
+"""Separate lips that are joined in a mesh, so that muscles can part them.
 
-A file may double vertices along its lips; the reader has merged them, and they become two again. Or
-the lips are sealed: skin runs over the mouth. This skin is cut along the line of the inner lips'
-landmarks, 60 to 67: vertices on it are doubled, except at its two ends.
+There are two cases. A file may double vertices along its lips: the reader merges them, and here
+they become two again. Or skin covers the mouth: it is cut along the landmarks of the inner lips, 60
+to 67. Vertices on this line are doubled, except at its two ends.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..meshes import Mesh
 
 UPPER_LIP = (60, 61, 62, 63, 64)
 LOWER_LIP = (60, 67, 66, 65, 64)
-OUTER_MIDDLES = (51, 57)  # of the upper and the lower lip's outer border
+OUTER_MIDDLES = (51, 57)  # of the outer borders of the upper and the lower lip
 
 
 def lips_line(landmarks: Floats64) -> Floats64:
@@ -31,16 +31,17 @@ def lips_line(landmarks: Floats64) -> Floats64:
 
 
 def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
-    """The mesh with the file's doubled vertices apart where the lips touch.
+    """The mesh with the file's doubled vertices kept separate where the lips touch.
 
-    A file doubles vertices along seams of its texture, and the reader merges them; between lips
-    they must stay apart. landmarks: their places [unit of the mesh], shape (68, 3). Returns None if
-    no vertex is doubled there.
+    A file doubles vertices along seams of its texture, and the reader merges them. Between lips
+    they must stay separate. landmarks: places [unit of the mesh], shape (68, 3). Returns None if no
+    vertex is doubled there.
     """
     if mesh.corners is None or mesh.same is None:
         return None
     line = lips_line(landmarks)
-    # Share of the distance of the outer eye corners: touching lips lie nearer to their line.
+    # Share of the distance between the outer eye corners. Touching lips lie nearer to the line
+    # between them.
     most_gap = 0.01
     near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
     off = _distances(mesh.vertices, line)
@@ -56,9 +57,10 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
 class LipCut:
     """A cut between the lips of a mesh.
 
-    sources: the file's vertex that each new vertex doubles, shape (n,); new ones follow after the
-    last. below: the triangles at the cut on the lower lip, which take the new vertices, by the
-    file's numbers, the least first, shape (k, 3).
+    sources: the file's vertex that each new vertex doubles, shape (n,).
+    New vertices follow after the last vertex of the file.
+    below: triangles at the cut on the lower lip, which get the new vertices, shape (k, 3).
+    Each row holds the file's vertex numbers, the least first.
     landmarks: vertices of the cut mesh, shape (68,). points: their places, (68, 3).
     """
 
@@ -73,7 +75,7 @@ class LipCut:
         return f"its lips were sealed: they are cut apart, {len(self.sources)} vertices are doubled"
 
     def applied(self, mesh: Mesh) -> Mesh:
-        """The mesh of the file, cut."""
+        """Cut the mesh of the file."""
         count = len(mesh.vertices)
         corners = mesh.faces if mesh.corners is None else mesh.corners
         rows = np.flatnonzero(self.is_below(corners))
@@ -82,7 +84,7 @@ class LipCut:
         corners = corners.copy()
         corners[rows] = place[corners[rows]]
         same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
-        # New vertices that double the same place are merged again.
+        # New vertices in the same place are merged.
         _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
         same = np.concatenate([same, count + first[number]])
         faces = mesh.faces.copy()
@@ -99,7 +101,7 @@ class LipCut:
         )
 
     def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
-        """Flags of triangles (F, 3), with the file's numbers, that take new vertices."""
+        """Flags of triangles (F, 3) of the file that get new vertices."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
         found = np.zeros(len(triangles), np.bool_)
@@ -108,14 +110,14 @@ class LipCut:
 
 
 def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
-    """The cut between sealed lips; None if lips are apart, or no line of edges parts them.
+    """The cut between joined lips; None if the lips are apart, or no path of edges lies between.
 
-    numbers: vertices at the landmarks, shape (68,). landmarks: their places [unit of the mesh],
-    shape (68, 3).
+    numbers: vertices at the landmarks, shape (68,). landmarks: places [unit of the mesh], shape
+    (68, 3).
     """
     line = lips_line(landmarks)
     gaps = landmarks[list(UPPER_LIP)] - landmarks[list(LOWER_LIP)]
-    most_gap = 0.12  # share of the way between the corners
+    most_gap = 0.12  # of the distance between the corners
     width = np.linalg.norm(line[-1] - line[0])
     if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
         return None
@@ -151,14 +153,14 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """A path of edges along a line (n, 3), as vertices from end to end; None if there is none."""
+    """Vertices of a path of edges along a line (n, 3), from end to end; None without a path."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
     edges = np.unique(np.sort(sides_of(mesh.faces), axis=1), axis=0)
     points = mesh.vertices[edges]
     lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     off = _distances(points.mean(axis=1), line)
-    # Share of the line's length: an edge at this distance counts as twice as long.
+    # An edge at this distance, a share of the line's length, counts as twice as long.
     near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
     count = len(mesh.vertices)
@@ -173,7 +175,7 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
-    """The triangles at the inner vertices of a path, in the parts that the path separates."""
+    """The triangles at the inner vertices of a path, grouped by side of the path."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
     sides = np.sort(sides_of(faces[strip]), axis=1)
     owner = np.tile(np.arange(len(strip)), 3)
@@ -195,7 +197,7 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
 
 def _distances(points: Floats64, line: Floats64) -> Floats64:
     """Distances of points (n, 3) from a line (m, 3), shape (n,)."""
-    place_count = 33  # on each part of the line
+    place_count = 33  # points on each segment of the line
     steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
     places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
     return np.asarray(scipy.spatial.cKDTree(places).query(points)[0])

@@ -1,7 +1,7 @@
 """Checks of a mesh that should be a face, each with an error of one line.
 
 A mesh must be one manifold surface, oriented outward, with a mouth and two eyes that are open or at
-least slit: where the lips are welded no muscle can part them.
+least slit: no muscle can part welded lips.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
 MOST_TRIANGLES = 250_000
-FEWEST_TRIANGLES = 300  # eyes and mouth of fewer have no shape (chosen)
+FEWEST_TRIANGLES = 300  # with fewer, eyes and mouth have no shape (chosen)
 
 
 class CoveredError(AssetError):
@@ -36,22 +36,21 @@ class ShutMouthError(CoveredError):
 
 @dataclass(frozen=True)
 class SkinPiece:
-    """The piece of a mesh with the landmarks, and the numbers of its vertices in the file."""
+    """The piece of a mesh with the landmarks, and its numbers in the whole mesh."""
 
     vertices: Floats64  # (V, 3)
     faces: Integers32  # (F, 3)
     landmarks: Integers32  # (68,) numbers in this piece
     file_vertices: Integers32  # (V,) numbers in the whole mesh
-    file_faces: Integers64  # (F,) the same for triangles
+    file_faces: Integers64  # (F,) numbers of the triangles in the whole mesh
     is_turned: bool = False  # whether the file's triangles faced inward
 
 
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
     """Leave out the pieces without a landmark: eyeballs, teeth, vertices of no triangle.
 
-    Triangles that name a vertex twice, which have no area, go as well.
-    Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
-    or too few.
+    Triangles with a vertex twice, which have no area, are left out, too. Raises AssetError if
+    landmarks lie on two pieces or on none, or if there are too few or too many triangles.
     """
     _check_count(faces, FEWEST_TRIANGLES, math.inf)
     is_triangle = ~_names_twice(faces)
@@ -74,17 +73,17 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
 def with_seams_joined(
     vertices: Floats64, faces: Integers32, landmarks: Integers32
 ) -> tuple[Integers32, Integers32]:
-    """Triangles and landmarks of one piece, whose seams in the file are joined.
+    """Triangles and landmarks of a mesh after seams between its pieces are joined.
 
-    Programs double vertices where texture or material change, or give each triangle its own. Where
-    landmarks lie on several pieces, coinciding vertices on their edges are merged, if the result is
-    a surface. Else all is returned unchanged.
+    Programs double vertices where texture or material change, or in every triangle. If landmarks
+    lie on several pieces, coinciding vertices on the borders are merged. If the result is no
+    manifold surface, the arguments are returned unchanged.
     """
     piece = pieces_of(faces, len(vertices))
     if (piece[landmarks] == piece[landmarks[0]]).all():
         return faces, landmarks
     border = border_vertices(faces)
-    first, number = unique_points(vertices[border] + 0.0)  # removes signs of zeros
+    first, number = unique_points(vertices[border] + 0.0)  # + 0.0 turns -0.0 into 0.0
     same = np.arange(len(vertices), dtype=np.int32)
     same[border] = border[first[number]]
     joined = same[faces]
@@ -108,16 +107,16 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
 
 
 def pieces_of(faces: Integers32, count: int) -> Integers32:
-    """The piece of a mesh to which each of its `count` vertices belongs, shape (count,)."""
+    """The number of the connected piece of each of the `count` vertices, shape (count,)."""
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
     return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
 def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
-    """The vertices of each piece of a mesh, in their order, without those of no triangle.
+    """The vertices of each piece of a mesh in rising order, without vertices of no triangle.
 
-    piece: that of each vertex, see `pieces_of`, shape (V,).
+    piece: number of each vertex's piece, see `pieces_of`, shape (V,).
     """
     used = np.unique(faces)
     order = used[np.argsort(piece[used], kind="stable")]
@@ -131,7 +130,7 @@ def _names_twice(faces: Integers32) -> Flags:
 
 
 def check_manifold(faces: Integers32) -> None:
-    """Raise AssetError unless each edge has one or two triangles, which agree on the outside."""
+    """Raise AssetError unless each edge has one or two triangles with the same orientation."""
     directed = sides_of(faces)
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
     if (uses > 2).any():
@@ -152,7 +151,7 @@ def check_manifold(faces: Integers32) -> None:
 def check_pieces(faces: Integers32, count: int) -> None:
     """Raise AssetError if no piece of a mesh with `count` vertices could be a skin.
 
-    The error is that of the largest piece.
+    The error is about the largest piece.
     """
     faces = faces[~_names_twice(faces)]
     if not len(faces):
@@ -174,7 +173,7 @@ def check_pieces(faces: Integers32, count: int) -> None:
 
 
 def check_openings(skin: SkinPiece) -> None:
-    """Raise AssetError if lips are welded or skin covers an eye; in the face space [mm]."""
+    """Raise AssetError if lips are welded or skin covers an eye; skin: in the face space [mm]."""
     middle_of_lips = (62, 66)  # inner landmarks, above and below
     over, under = skin.landmarks[list(middle_of_lips)]
     from_above, from_below = path_lengths(
@@ -184,9 +183,9 @@ def check_openings(skin: SkinPiece) -> None:
     ends = skin.landmarks[list(corners_of_lips)]
     across = from_above[under]
     around = (from_above[ends] + from_below[ends]).min()
-    # The two lips join around the corners of the mouth. If the way along the skin from one to the
-    # other is shorter than this share of the way around, they are welded. A bag behind the lips may
-    # also join them, but farther away.
+    # A path along the skin leads from lip to lip around a corner of the mouth. If the shortest path
+    # is shorter than this share of the path around a corner, the lips are welded. A bag behind the
+    # lips may also join them, but its path is longer.
     welded_share = 0.6
     if over == under or across < welded_share * around:
         raise ShutMouthError(
@@ -207,7 +206,7 @@ def check_openings(skin: SkinPiece) -> None:
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:
-    """Cut away a bag behind the lips, for the built-in mouth; in the face space [mm]."""
+    """Cut away a bag behind the lips, which the built-in mouth replaces; skin: face space [mm]."""
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
     edges = _edges(skin.vertices, skin.faces)
@@ -223,7 +222,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     least_bag_depth = 15.0  # [mm]
     if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
         return skin
-    rim_depth = 4.0  # [mm] of a bag that stay behind the lips
+    rim_depth = 4.0  # [mm] of the bag stay behind the lips
     is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > rim_depth
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
@@ -236,12 +235,12 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
 
 
 def _is_covered(corners: Floats64, point: Floats64) -> bool:
-    """Whether a view from the front meets a triangle at a point, or a little behind it."""
+    """Whether a ray from the front meets a triangle at a point, or a little behind it."""
     edges = np.roll(corners, -1, axis=1) - corners
     to = point - corners
     turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
     hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    # [mm] behind the lids' edges: skin up to there covers the eye; sockets are deeper.
+    # Skin down to this depth [mm] behind the lids' edges covers the eye; sockets are deeper.
     cover_depth = 6.0
     return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())
 
@@ -255,7 +254,7 @@ def path_lengths(
 
 
 def _edges(vertices: Floats64, faces: Integers32) -> Any:
-    """The lengths of edges, as a graph of vertices."""
+    """A sparse graph of vertices with the lengths of edges [mm]."""
     links = sides_of(faces)
     links = np.unique(np.sort(links, axis=1), axis=0)
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)

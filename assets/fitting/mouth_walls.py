@@ -1,10 +1,10 @@
-"""The walls of the mouth: they lie within the skin, and stretch between both jaws.
+"""The walls of the mouth, which lie within the skin and stretch between both jaws.
 
-The upper walls hang from the skull, beside the teeth and behind the throat, down to the floor of
-the mouth, which is the mandible's. `Part.mandible_shares` has the share of the mandible's motion at
-each of their vertices. So they are only as long as a shut mouth needs, and do not reach the neck,
-whose skin follows the head less and less. On another head they are moved toward the middle of the
-mouth where they would leave its skin.
+The upper walls hang from the skull, beside the teeth and behind the throat. They end at the floor
+of the mouth, which moves with the mandible. Each of their vertices takes a share of the mandible's
+motion (`Part.mandible_shares`). So they are only as long as a shut mouth needs, and do not reach
+the neck, which follows the head less and less. On another head they are moved toward the middle of
+the mouth where they would leave its skin.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..model import Part
 from .warp import Similarity
 
 ShareArray = Floats64 | Floats32
-WALLS = "oral_cavity"  # the names of these parts begin with it
+WALLS = "oral_cavity"  # beginning of the names of these parts
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class FittedSkin:
     """The skin and eyes into which the built-in organs are fitted.
 
     vertices, normals: the skin at rest [mm], shape (V, 3).
-    faces: its triangles, counter-clockwise seen from outside, shape (F, 3).
-    landmarks: their points [mm], shape (68, 3).
+    faces: triangles of the skin, counter-clockwise seen from outside, shape (F, 3).
+    landmarks: places [mm], shape (68, 3).
     mandible_weight: carried over from the built-in head, shape (V,).
-    pieces: the file's pieces besides the skin, vertices [mm] of each, shape (n, 3).
+    pieces: vertices [mm] of each other piece of the file, shape (n, 3).
     """
 
     vertices: Floats64
@@ -48,17 +48,17 @@ class FittedSkin:
 
 
 def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:
-    """Points [mm], shape (n, 3), between the skull and a jaw that has moved.
+    """Move points of walls [mm], shape (n, 3), by their shares of the mandible's motion.
 
-    shares: how far each follows the mandible, 0 to 1, shape (n,). mandible: its motion as seen from
-    the skull, a matrix (4, 4) for column vectors.
+    shares: 0 (fixed to the skull) to 1 (fixed to the mandible), shape (n,). mandible: motion
+    relative to the skull, a matrix (4, 4) for column vectors.
     """
     moved = moved_points(mandible, walls)
     return np.asarray(walls + shares[:, None] * (moved - walls))
 
 
 def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
-    """Motions of a head's mandible that is half and wholly open: matrices (4, 4).
+    """Motions of the mandible to a half open and to a wholly open mouth: matrices (4, 4).
 
     axis: centres of the right and the left condyle [mm], shape (2, 3).
     """
@@ -79,11 +79,11 @@ def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
 def within_skin(
     parts: Sequence[Part], fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
 ) -> list[Part]:
-    """Parts, moved toward the middle of the mouth until they lie `wall_depth` behind all skin.
+    """Move parts toward the middle of the mouth until they lie `wall_depth` behind all skin.
 
-    mouth: takes the built-in mouth to that of the head. jaws: motions of its mandible, which the
-    skin follows by its weight. An open jaw also opens the throat of a mask, so the border of the
-    skin counts as closed only at rest.
+    mouth: similarity from the built-in mouth to the head's mouth. jaws: motions of the mandible,
+    which the skin follows by `mandible_weight`. An open jaw also opens the throat of a mask, so the
+    border of the skin counts as closed only at rest.
     """
     if not parts:
         return []
@@ -95,7 +95,7 @@ def within_skin(
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
     wall_depth = 6.0  # [mm] behind the skin
-    least_cosine = 0.35  # between the skin's normal and a ray: flatter rays count like this
+    least_cosine = 0.35  # least cosine between the skin's normal and a ray (flatter: this)
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, shares, mandible) - middle
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
@@ -110,17 +110,17 @@ def within_skin(
 
 
 def _mandible_shares(part: Part) -> ShareArray:
-    """How far each vertex of a part goes with the mandible, 0 to 1, shape (n,)."""
+    """The share of the mandible's motion at each vertex of a part, 0 to 1, shape (n,)."""
     if part.mandible_shares is not None:
         return part.mandible_shares
     return np.full(len(part.vertices), 1.0 if part.bone == "mandible" else 0.0)
 
 
 def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
-    """Vertices and faces of a skin with its border closed by fans; lids and lips stay open.
+    """Close the border of a skin by fans, except at lids and lips; return vertices and faces.
 
     The tip of a fan is the middle of the border, for example in the plane of a cut neck. The border
-    of a mask goes around the face; there the tip lies behind the throat, to leave it room.
+    of a mask goes around the face. Its fan has the tip behind the throat, to leave the throat room.
     """
     skin = fitted.vertices
     faces = fitted.faces

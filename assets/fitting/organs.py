@@ -1,7 +1,7 @@
-"""Eyeballs, teeth, tongue and the mouth's inside of another head.
+"""Fit eyeballs, teeth, tongue and the inside of the mouth to another head.
 
-Eyeballs stay round: the landmarks of each eye move and scale its ball, which is then fitted into
-the lids, so that they lie on it all around. Teeth, gums and tongue stay stiff: they follow the
+Eyeballs stay round: the landmarks of each eye give a first ball, which is then fitted behind the
+lids, so that they touch it all around. Teeth, gums and tongue stay stiff: they move by the
 similarity nearest to the warp. The walls of the mouth (mouth_walls.py) and the corners of the eyes
 bend with the warp.
 """
@@ -31,13 +31,14 @@ RIM_ROWS = 8  # of vertices, from the lids' edge backward
 
 
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
-    """The eyes of a head: round balls behind its lids.
+    """Place the eyeballs of a head behind its lids.
 
-    An eyeball of the file gives place and size, or the ball inside a socket does; else the lids do.
-    Eyeballs and irises differ less than the openings in front of them: by the root of the ratio.
+    Place and size come from an eyeball of the file, else from a socket, else from the lids.
+    Eyeballs and irises vary less between people than the openings between the lids, so their
+    estimate is scaled by the square root of the ratio of the openings.
     """
     eyes = []
-    lid_depth = 5.0  # [mm] from the landmarks on a lid's edge that its inner skin may reach
+    lid_depth = 5.0  # [mm] reach of a lid's inner skin from the landmarks on its edge
     for eye in known.eyes:
         around = EYE_LANDMARKS[eye.name]
         source = known.vertices[known.landmarks[around]]
@@ -47,7 +48,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
-        # The wall of a socket faces its ball, and may be narrower than the ball.
+        # Skin that faces the ball is the wall of a socket, and may be narrower than the ball.
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[is_lid]])
@@ -58,7 +59,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         if own is None and socket is None:
             iris = radius / eye.radius * eye.iris_radius
         centre, radius = own or socket or (centre, radius)
-        most_iris = 0.8  # of the ball's radius: a ball may be small for its face
+        most_iris = 0.8  # of the ball's radius; some balls are small for their face
         iris = min(iris, most_iris * radius)
         if own is None:
             centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
@@ -67,36 +68,36 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
 
 
 def _extent(points: Floats64) -> float:
-    """Vector from corner to corner of an eye [mm]."""
+    """Distance between the corners of an eye [mm]."""
     return float(np.linalg.norm(points[3] - points[0]))
 
 
 def _behind_lids(
     centre: Floats64, radius: float, middle: Floats64, skin: Floats64
 ) -> tuple[Floats64, float]:
-    """Centre and radius [mm] of the sphere that lies behind the lids all around.
+    """Centre and radius [mm] of the sphere that touches the lids from behind all around.
 
-    centre, radius: an estimate; middle: that of the opening; skin: that of the lids.
+    centre, radius: an estimate. middle: of the opening, (3,). skin: points of the lids, (n, 3).
     """
     around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
-    sector_count = 12  # around an eye; in each the nearest skin should lie on the eyeball
+    sector_count = 12  # around an eye; in each one, the nearest skin should touch the eyeball
     sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: Floats64) -> Floats64:
-        """Errors of the sphere: distances from the lids in each sector, and from its size."""
+        """Errors of the sphere: gap to the lids in each sector, shift aside, change of size."""
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
         gaps -= size + LID_CLEARANCE
-        aside_cost = 2.0  # per millimetre: an eye looks out of the middle of its opening
+        aside_cost = 2.0  # per millimetre: an eye lies behind the middle of its opening
         aside = aside_cost * (values[:2] - centre[:2])
         size_cost = 20.0  # [mm] for a sphere twice as large
-        sunk_cost = 3.0  # of skin inside the ball, times that of a gap in front of it
+        sunk_cost = 3.0  # cost of skin inside the ball, relative to a gap in front of it
         return np.concatenate(
             [np.where(gaps < 0.0, sunk_cost * gaps, gaps), aside, [size_cost * values[3]]]
         )
 
-    # [mm] of distance from which a sector counts less: corners are off the ball.
+    # [mm] of error from which a sector counts less, because the corners of an eye are off the ball.
     touching_distance = 0.5
     found = scipy.optimize.least_squares(
         off, np.append(centre, 0.0), loss="soft_l1", f_scale=touching_distance
@@ -105,7 +106,7 @@ def _behind_lids(
 
 
 def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
-    """Way [mm] that a sphere may move forward until it touches a point in front of it."""
+    """Distance [mm] by which a sphere can move forward until it touches a point of the skin."""
     away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)
     in_front = (away[:, 2] > 0.0) & (across < radius)
@@ -118,10 +119,11 @@ def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
 def lids_on_eyes(
     known: Head, vertices: Floats64, eyes: Sequence[Eye], shares: Sequence[float]
 ) -> Floats64:
-    """Vertices, moved so that lids have the built-in head's distance from eyes.
+    """Move the lids to the same distance from the eyes as on the built-in head.
 
-    eyes: in the order of `known.eyes`. shares: share of the way for each row of vertices around the
-    eye, from its edge outward. The corners of the eye stay, because they rest on flesh.
+    eyes: in the order of `known.eyes`. shares: how far each row of vertices around the eye moves,
+    from its edge outward, as a share of the whole way. The corners of the eye stay, because they
+    rest on flesh.
     """
     placed = vertices.copy()
     for old, new in zip(known.eyes, eyes, strict=True):
@@ -144,10 +146,10 @@ def place_parts(
     *,
     kept_bone: str = "",
 ) -> tuple[Part, ...]:
-    """The rigid parts of the built-in head, fitted into another head.
+    """Fit the parts inside the built-in head into another head.
 
-    warp: takes the built-in head there. jaws: motions of its mandible, see `opened_jaws`.
-    kept_bone: bone of parts that do not change.
+    warp: from the built-in head to the other head. jaws: motions of the mandible, see
+    `opened_jaws`. kept_bone: bone of the parts that do not change.
     """
     mouth = _mouth_of(known, fitted, warp)
     rises = _rises_of_jaws(known, fitted.landmarks, mouth)
@@ -172,7 +174,7 @@ def place_parts(
 
 
 def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
-    """The place of the stiff parts of the mouth: behind the skin, as one body."""
+    """The similarity that moves the stiff parts of the mouth, as one body, behind the skin."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
     ]
@@ -180,29 +182,29 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     stiff = np.vstack([*found, known.vertices[known.landmarks[mouth_landmarks]]])
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
-    least_forward = 0.2  # share of a normal: skin from here on is in front of teeth
+    least_forward = 0.2  # z of a normal; skin with a larger one may be in front of teeth
     skin = fitted.vertices[fitted.normals[:, 2] > least_forward]
-    # Depth [mm], and number of skin vertices from which teeth and gums keep away.
+    # Teeth and gums stay behind skin within this distance [mm], and at most this many vertices.
     teeth_clearance = 4.0, 3
     distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=teeth_clearance[1])
-    stiff_depth = 2.5  # [mm] of teeth and gums behind the skin: lips and cheeks are thicker
+    stiff_depth = 2.5  # [mm] from teeth and gums to the skin; lips and cheeks are thicker
     depth = (
         np.where(distance < teeth_clearance[0], skin[beside, 2], np.inf).min(axis=1) - stiff_depth
     )
-    farthest_back = 10.0  # [mm] that the teeth move back for this
+    farthest_back = 10.0  # [mm] by which the teeth move back at most
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
 
 def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple[float, float]:
-    """How far [mm] the upper and the lower jaw rise from their place in a shut mouth.
+    """Rise [mm] of the upper and the lower jaw from their places in a shut mouth.
 
-    Each goes with its lip where a mouth is open at rest: as one body in the middle of such lips,
-    they would show shut teeth and much gum. landmarks: places of the 68 [mm], (68, 3).
+    If a mouth is open at rest, each jaw moves with its lip. Otherwise shut teeth with much gum
+    would show between the lips. landmarks: places [mm], (68, 3).
     """
     inner_lips = slice(61, 64), slice(65, 68)
     upper, lower = (landmarks[lip, 1].mean() for lip in inner_lips)
-    most_of_shut = 3.0  # [mm] between lips while teeth are together
+    most_of_shut = 3.0  # [mm] between the lips, up to which the teeth are shut
     if upper - lower <= most_of_shut:
         return 0.0, 0.0
     own = mouth.points(known.vertices[known.landmarks])
@@ -211,7 +213,7 @@ def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple
 
 
 def _moved(part: Part, similarity: Similarity) -> Part:
-    """A part that keeps its shape."""
+    """Move a part without changing its shape."""
     normals = part.normals @ similarity.rotation.T
     return replace(
         part,
@@ -221,7 +223,7 @@ def _moved(part: Part, similarity: Similarity) -> Part:
 
 
 def _resized(part: Part, old: Eye, new: Eye) -> Part:
-    """An eyeball with the size, the place and the iris of another."""
+    """Give an eyeball the size, the place and the iris of another eye."""
     away = part.vertices - old.centre
     reach = np.linalg.norm(away, axis=1)
     angle = np.arccos(away[:, 2] / reach)
@@ -236,7 +238,7 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
 
 
 def _bent(part: Part, warp: ThinPlateSpline) -> Part:
-    """A part that the warp bends into its new place."""
+    """Bend a part by the warp."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
     normals = unit_vectors(ahead)
@@ -246,15 +248,15 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
 def with_eyelid_rims(
     parts: Sequence[Part], vertices: Floats64, faces: Integers32, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head, with rims of flesh from the skin's edge around an eye to the ball.
+    """Add rims of flesh between the lids and the eyeballs to the parts of a head.
 
-    The built-in lids reach behind the front of the ball, and flesh fills their corners. The lids of
-    other meshes may end in front of it; without a rim the empty head would show.
+    The built-in lids reach behind the front of the ball, and flesh fills the corners of the eye.
+    The lids of other meshes may end in front of the ball. Without a rim, a gap into the empty head
+    would show.
     vertices: those of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
-    # Sizes of the rim from the edge of lids to the eyeball.
-    flesh = "eye_corners"  # the part that rims belong to, with its colour
+    flesh = "eye_corners"  # rims belong to this part and have its colour
     placed = []
     for part in parts:
         if part.name == flesh:
@@ -267,9 +269,9 @@ def with_eyelid_rims(
 
 
 def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
-    """Flesh without the corners of eyes in closed sockets, which the head's own skin fills."""
+    """Remove the flesh in the corners of closed sockets, which the head's own skin fills."""
     middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
-    most_radii = 2.0  # of an eye, within which its flesh lies
+    most_radii = 2.0  # reach of an eye's flesh, in radii of the eyeball
     stays = np.ones(len(part.faces), np.bool_)
     for eye in closed:
         stays &= np.linalg.norm(middle - eye.centre, axis=1) > most_radii * eye.radius
@@ -284,32 +286,32 @@ def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
 
 
 def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
-    """The edge of the skin around an eye, in the direction of its faces; [] in a closed socket."""
-    most_radii = 1.6  # from the ball's centre: the edge around an eye is nearer
+    """Vertices of the skin's edge around an eye, in the order of its faces; [] if it has none."""
+    most_radii = 1.6  # reach of the edge from the ball's centre, in radii
     reach = most_radii * eye.radius
     away = np.linalg.norm(vertices - eye.centre, axis=1)
-    near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all of them would take a second
+    near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all faces would take a second
     loops = boundary_loops(near)
     return next((loop for loop in loops if away[loop].max() < reach), [])
 
 
 def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
-    """Vertices (RIM_ROWS n, 3), row by row, and faces that face the front.
+    """Vertices (RIM_ROWS n, 3) of a rim, row by row, and its faces, turned to the front.
 
-    edge: the end of the skin, shape (n, 3), in the direction of its faces. From each of its points
-    a row runs backward around the ball and approaches it.
+    edge: points of the skin's edge, shape (n, 3), in the order of its faces. A line of vertices
+    runs from each point backward around the ball and approaches it.
     """
     away = edge - eye.centre
     length = np.linalg.norm(away, axis=1)
     beside = away * [1.0, 1.0, 0.0]
     beside = unit_vectors(beside)
     start = np.arccos(away[:, 2] / length)
-    rim_depth = 3.0  # [mm] behind the equator of the ball, where a rim ends
+    rim_depth = 3.0  # [mm] from the equator of the ball back to the end of a rim
     end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)
     share = np.linspace(0.0, 1.0, RIM_ROWS)[:, None]
     angle = (1.0 - share) * start + share * end
-    tucked_depth = 0.2  # [mm] inside the lids, where a rim begins
-    sunk_depth = 0.3  # [mm] inside the ball, where it ends
+    tucked_depth = 0.2  # [mm] from the lids inward to the beginning of a rim
+    sunk_depth = 0.3  # [mm] from the ball's surface inward to the end of a rim
     reach = (1.0 - share) * (length + tucked_depth) + share * (eye.radius - sunk_depth)
     ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
     points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
@@ -317,11 +319,11 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
 
 
 def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
-    """A part with rims of its colour, which darken backward."""
+    """Add rims, which have the part's colour and darken backward, to a part."""
     if not rims:
         return part
     colour = part.colours.mean(axis=0)
-    least_light = 0.6  # share of light at its end, in the shade
+    least_light = 0.6  # share of light at the shaded end of a rim
     for points, faces in rims:
         light = np.repeat(np.linspace(1.0, least_light, RIM_ROWS), len(points) // RIM_ROWS)
         part = replace(

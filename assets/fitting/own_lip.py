@@ -1,7 +1,7 @@
-"""Correspondence of another head's skin with the warped built-in one, lip by lip.
+"""Find the nearest places on the warped built-in skin, with each lip on the same lip.
 
-Full lips overlap: either lip may lie in front of the edge of the other. The warped lips cross
-there, and the nearest point may be on the other lip.
+Full lips overlap: one lip may lie in front of the other's edge. There the warped lips cross, and
+the nearest point may be on the other lip.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from .warp import nearest_on
 
 
 def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats64) -> SurfacePoints:
-    """Feet of a skin's vertices [mm] on the warped built-in skin, see `nearest_on`.
+    """Nearest places on the warped built-in skin for a skin's vertices [mm], see `nearest_on`.
 
-    Vertices of one lip have no feet on the other.
+    No vertex of one lip gets a place on the other lip.
     """
     found = nearest_on(skin.vertices, normals, warped, known.faces)
     own = _lip_sides(skin.vertices, skin.faces, skin.landmarks)
@@ -37,12 +37,12 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
 
 
 def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
-    """1 on the upper lip, -1 on the lower one, 0 elsewhere and between them; shape (V,)."""
+    """1 on the upper lip, -1 on the lower lip, 0 between the lips and elsewhere; shape (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
     ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
     upper, lower = ways
-    lip_reach = 20.0  # [mm] along the skin, from the edge of a lip
-    between = 4.0  # [mm] by which the way to the other lip must be longer
+    lip_reach = 20.0  # [mm] along the skin from the inner edge of a lip
+    between = 4.0  # [mm] by which the path to the other lip must be longer
     sides = np.zeros(len(vertices), np.int32)
     sides[(upper < lip_reach) & (upper + between < lower)] = 1
     sides[(lower < lip_reach) & (lower + between < upper)] = -1
@@ -50,7 +50,7 @@ def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> 
 
 
 def _replaced(points: SurfacePoints, where: Flags, others: SurfacePoints) -> SurfacePoints:
-    """The same places, some of them replaced."""
+    """Replace some places by others."""
     places = {}
     for name in ("distances", "triangles", "corners", "weights"):
         values = getattr(points, name).copy()

@@ -1,14 +1,15 @@
-"""The built-in skin's picture on another head: the place of each vertex in it.
+"""Texture coordinates of another head in the picture of the built-in skin.
 
-A vertex takes the texture coordinates of the nearest point on the warped built-in skin. This is
-right on a face, but wrong where one head has folds that the other lacks: in nostrils, behind ears,
-in the mouth. So farther feet are trusted less, and those on an ear or in a nostril not at all.
-Vertices between trusted ones are spread evenly, as if by springs. With its surroundings fixed such
-a patch covers the enclosed area once (Tutte 1963, "How to draw a graph").
+A vertex takes the texture coordinates of the nearest point on the warped built-in skin, its foot.
+This is right on a face, but wrong where one head has folds that the other lacks: in nostrils,
+behind ears, in the mouth. So a farther foot is trusted less, and a foot on an ear or in a nostril
+is not trusted at all. Vertices between trusted ones are spread evenly, as if by springs. Because
+its surroundings are fixed, such a patch covers the enclosed area once (Tutte 1963, "How to draw a
+graph").
 
-A mesh with a picture has its own texture coordinates; the maps of the built-in head (its wrinkles,
-and segments such as nose and lips) have others. The maps are drawn again texel by texel, so that
-all pictures have one layout.
+A mesh with its own picture keeps its own texture coordinates. The maps of the built-in head
+(wrinkles, and segments such as nose and lips) are then drawn again, texel by texel, in the layout
+of this picture.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST, Texture
 
-SIZE = 1024  # [texels] each way of maps that are drawn anew
+SIZE = 1024  # [texels] width and height of maps that are drawn again
 
 
 def spread_uv(
@@ -43,7 +44,7 @@ def spread_uv(
 ) -> Floats32:
     """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
 
-    warped: the built-in skin in its new place; nearest: feet on it.
+    warped: vertices of the built-in skin after the warp. nearest: the foot of each vertex on it.
     skin: the other head's vertices, unit normals and faces.
     """
     vertices, normals, faces = skin
@@ -51,22 +52,23 @@ def spread_uv(
     away = np.linalg.norm(feet - vertices, axis=1)
     across = cross_products(warped, nearest.corners)
     across = unit_vectors(across)
-    trusted_within = 6.0  # [mm] from a foot: its trust falls to half
+    trusted_within = 6.0  # [mm] distance from a foot at which its trust is half
     trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
     least_cosine = 0.3  # between the normals of a vertex and of its foot
     trust[(across * normals).sum(axis=1) < least_cosine] = 0.0
     is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
-    # A neck or shoulders below those of the built-in head have their feet on its rim.
+    # A neck or shoulders that reach below the built-in head have their feet on its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
     count = len(vertices)
     sides = sides_of(faces).astype(np.int64)
     links = np.unique(np.sort(sides, axis=1), axis=0)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
-    # Shorter edges are stiffer: else uneven edges take even steps, and slopes in the picture jump.
+    # Shorter edges are stiffer. With equal stiffness, short and long edges would get equal steps in
+    # the picture.
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] between neighbours at least, so that close ones do not hold each other too firmly.
+    # [mm] A least distance limits the stiffness between close neighbours.
     least_distance = 0.05
     stiffness = 1.0 / np.maximum(lengths, least_distance)
     linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
@@ -74,7 +76,7 @@ def spread_uv(
     degree = linked.sum(axis=0)
     neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
     hold_range = 4.0, 12.0
-    least_trust = 1e-6  # above 0, so that every vertex finds a colour
+    least_trust = 1e-6  # above 0, so that every vertex gets a place
     hold = (
         neighbour
         * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
@@ -93,13 +95,13 @@ def spread_uv(
 
 
 def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> Flags:
-    """Whether another part of the skin lies over the same place and nearer, shape (V,).
+    """Whether another part of the skin has the same foot and lies nearer to it, shape (V,).
 
-    links: edges, shape (E, 2). The middles of long edges count like vertices: vertices of a coarse
-    skin alone are too far apart to separate a nostril from the nose around it.
+    links: edges, shape (E, 2). The middles of long edges count like vertices, because the vertices
+    of a coarse skin are too far apart to separate a nostril from the nose around it.
     """
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] between competing feet; their vertices are farther apart.
+    # [mm] Competing feet are nearer to each other, and their vertices are farther apart.
     competing_distance = 2.0
     long = links[lengths > competing_distance]
     all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
@@ -117,10 +119,10 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
 
 
 def plain_skin(known: Head) -> tuple[Image, Image]:
-    """The built-in picture, with plain skin for ears and nostrils, and light without their shade.
+    """The built-in picture with plain skin for ears and nostrils, and light without their shade.
 
-    Another head has them elsewhere, as form, and light shows them. The pictures ship as data;
-    `plain_picture` and `own_light` of revision c11b6d62 drew them.
+    Another head has its ears and nostrils in other places, where its form and the light show them.
+    The pictures ship as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
     """
     drawn = read_arrays(known.beside("_plain.npz"))
     picture = known.albedo.copy()
@@ -132,7 +134,7 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
 
 @dataclass(frozen=True)
 class Layout:
-    """Corners of triangles in a picture: texture coordinates and their numbers."""
+    """Places of triangles in a picture: texture coordinates, and their numbers at corners."""
 
     uv: Floats32
     face_uv: Integers32
@@ -144,7 +146,7 @@ class Layout:
 
 
 def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
-    """The texels of a picture of (height, width) under triangles, and one texel around them.
+    """The texels that triangles cover in a picture of (height, width), and one texel around.
 
     Raises AssetError if triangles cover the picture many times over.
     """
@@ -166,9 +168,9 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
 
 
 def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
-    """A picture with triangles of `layout` drawn over it.
+    """Draw triangles of `layout` over a picture.
 
-    colours: that of each corner, shape (F, 3, 3), or another picture and their layout in it.
+    colours: of each corner, shape (F, 3, 3); or another picture, and the triangles' layout in it.
     """
     texels = texels_within(layout, picture.shape[:2])
     if isinstance(colours, tuple):
@@ -185,8 +187,8 @@ def maps_in(
 ) -> tuple[Wrinkles, Image, Image]:
     """The built-in head's wrinkles, segments and light, in the layout of another mesh.
 
-    theirs: the built-in layout of the same triangles. size: that of the picture (H, W), which is
-    also the light's.
+    theirs: the built-in layout of the same triangles. size: (H, W) of the picture and of the
+    returned light.
     """
     import PIL.Image  # which to load a head takes no time for
 
@@ -200,7 +202,7 @@ def maps_in(
     change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change, slope)
-    steepest_percentile = 99.9  # of slopes that a map of wrinkles holds unclipped
+    steepest_percentile = 99.9  # [percent] of slopes that are not clipped
     steepest = (
         max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
     )
@@ -214,8 +216,8 @@ def maps_in(
 def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
     """Rates of change of the built-in layout along another, shape (U, 4) for its `uv`.
 
-    They are means over the surrounding triangles, by area: rates of single triangles jump at their
-    sides, and would break a furrow into pieces.
+    They are means over the surrounding triangles, weighted by area. Rates of single triangles jump
+    at edges, which would break a furrow into pieces.
     """
     corners = own.corners
     ways = corners[:, 1:] - corners[:, :1]
@@ -229,10 +231,10 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
-    """The picture of some triangles, and their layout in it; None if they have none.
+    """The picture of some triangles and their layout in it; None without a picture.
 
-    Several pictures become one, side by side; triangles without one take the others' mean colour.
-    turned: whether to return the corners of these triangles in the other order.
+    Several pictures become one, side by side; triangles without a picture get the mean colour.
+    turned: whether to reverse the order of each triangle's corners.
     """
     import PIL.Image  # which to load a head takes no time for
 
@@ -250,7 +252,7 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
         tiles = [np.asarray(PIL.Image.fromarray(p).resize((width, height))) for p in pictures]
         pictures = [np.hstack(tiles)]
     corners = texture.uv.astype(np.float64)[texture.face_uv[faces]]
-    corners -= np.floor(corners.mean(axis=1, keepdims=True))  # pictures repeat
+    corners -= np.floor(corners.mean(axis=1, keepdims=True))  # texture coordinates wrap around
     corners = corners.clip(0.0, 1.0)
     corners[..., 0] = (corners[..., 0] + np.searchsorted(used, numbers)[:, None]) / len(used)
     uv, number = np.unique(corners.reshape(-1, 2).astype(np.float32), axis=0, return_inverse=True)

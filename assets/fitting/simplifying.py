@@ -1,4 +1,4 @@
-"""A mesh of fewer triangles to simulate, for a head with too many to move in time."""
+"""Simplify the mesh of a head that has too many triangles for simulation in real time."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from ..topology import border_vertices, collapsed
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece, check_manifold, pieces_of
 
-MOST_SIMULATED = 20_000  # triangles: more give no better picture, and physics takes long
-SIMPLIFIED = 15_000  # triangles that are left
+MOST_SIMULATED = 20_000  # triangles; with more, motion looks the same and takes longer
+SIMPLIFIED = 15_000  # triangles of a simplified mesh
 
 
 @dataclass(frozen=True)
 class SimulatedHead:
-    """A mesh with all that `sim.create` reads; its attributes are those of `Head`.
+    """A mesh with all data for `sim.create`; it has the attributes of `Head`.
 
-    uv: of vertices in the built-in picture, shape (V, 2).
-    jaw_axis: None if no ear shows it; then `sim.create` guesses it from the landmarks.
+    uv: texture coordinates in the built-in picture, shape (V, 2).
+    jaw_axis: None without a visible ear; `sim.create` then guesses the axis from the landmarks.
     """
 
     vertices: Floats64
@@ -50,14 +50,14 @@ class SimulatedHead:
 
 
 def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """The same form [mm] with few enough triangles to move in time, most of them on the head.
+    """The same form [mm] with about SIMPLIFIED triangles, most of them on the head.
 
-    landmarks: their places [mm], shape (68, 3).
+    landmarks: places [mm], shape (68, 3).
     """
     distance = scipy.spatial.cKDTree(landmarks).query(skin.vertices)[0]
-    head_reach = 100.0  # [mm] around the landmarks; beyond lies the body
+    head_reach = 100.0  # [mm] around the landmarks; the body lies farther away
     is_head = (distance < head_reach)[skin.faces].any(axis=1)
-    most_attempts = 8  # to simplify a mesh that stays a surface
+    most_attempts = 8  # at a result that is a manifold surface
     for attempt in range(most_attempts):
         vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
         with contextlib.suppress(AssetError):
@@ -74,14 +74,14 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
 
 
 def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
-    """Other vertices and fewer triangles; the head has first choice of them, before the body.
+    """Vertices and fewer triangles; the head gets as many as it needs, the body what is left.
 
     is_head: flags of the skin's triangles, shape (F,).
     """
     body = skin.faces[~is_head]
     if not len(body):
         return collapsed(skin.vertices, skin.faces, SIMPLIFIED, attempt)
-    least_body = SIMPLIFIED * min(0.2, len(body) / len(skin.faces))  # of a head with many triangles
+    least_body = SIMPLIFIED * min(0.2, len(body) / len(skin.faces))  # triangles for the body
     head = skin.faces[is_head]
     head_count = min(len(head), SIMPLIFIED - int(least_body))
     vertices, faces = _part_with(skin.vertices, head, head_count, attempt)
@@ -92,7 +92,7 @@ def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Int
 def _part_with(
     vertices: Floats64, faces: Integers32, count: int, attempt: int
 ) -> tuple[Floats64, Integers32]:
-    """A part of a mesh with at most `count` triangles; its edges stay in place."""
+    """Simplify a part of a mesh to `count` triangles; its borders stay in place."""
     used, numbers = np.unique(faces, return_inverse=True)
     part = numbers.reshape(-1, 3).astype(np.int32)
     if len(part) <= count:
@@ -101,11 +101,11 @@ def _part_with(
 
 
 def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers32]:
-    """The same mesh, with separate vertices for sheets that touch along an edge.
+    """Split vertices where sheets of a mesh touch along an edge.
 
     `collapsed` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
-    vertex stays one if edges with two triangles connect all triangles around it. The largest piece
-    is kept; the others were attached only by such an edge.
+    vertex is not split if edges with two triangles connect all triangles around it. Only the
+    largest piece is kept; others were attached by pinched edges alone.
     """
     sides = sides_of(faces)
     _, edge = different_pairs(np.sort(sides, axis=1))
@@ -130,10 +130,10 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
 def _sewn(
     vertices: Floats64, faces: Integers32, more: Floats64, more_faces: Integers32
 ) -> tuple[Floats64, Integers32]:
-    """Two parts of a mesh as one, joined where their edges meet."""
+    """Join two parts of a mesh along their common border."""
     edge = border_vertices(faces)
     more_edge = border_vertices(more_faces)
-    joined_share = 2e-4  # of the size of both parts: `collapsed` moves an edge by less
+    joined_share = 2e-4  # of the size of both parts; `collapsed` moves a border by less
     joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
     distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
     is_joined = distance < joined_distance

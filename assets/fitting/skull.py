@@ -1,9 +1,10 @@
 """The parts under the skin of an opened head: skull, cartilage of the nose, throat.
 
-They ship as data (`data/skull.npz`) and are a proxy. Programs of revision f4bd608f
-(`assets/skull.py`, `assets/throat.py`) carved them from the built-in skin of that time, moved
-inward by the depth of its bone, with measures of an adult skull. Landmarks and directions of the
-scalp carry them to another head, and the cranium is pushed in where it would leave the skin.
+They ship as data (`data/skull.npz`) and are not from a scan. Programs of revision f4bd608f
+(`assets/skull.py`, `assets/throat.py`) made them from the built-in skin of that time: they moved it
+inward by the depth of bone, and used measures of an adult skull. A warp by landmarks and by
+directions of the scalp fits the parts to another head. The cranium is pushed in where it would
+leave the skin.
 """
 
 from __future__ import annotations
@@ -33,10 +34,10 @@ def build_skull(
     pivots: Mapping[str, Floats64],
     names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
 ) -> dict[str, Part]:
-    """Parts under the skin at rest, which move with their bones; those in `names`, or all.
+    """Build the parts under the skin at rest, all of them or those in `names`.
 
-    head: any object with vertices, faces and landmarks. pivots: the point about which "mandible"
-    turns, (3,). Raises AssetError if the file is missing or broken.
+    head: any object with vertices, faces and landmarks. pivots: "mandible" -> the point about which
+    it turns, (3,). Raises AssetError if the file is missing or broken.
     """
     file = Path(__file__).parents[1] / "data" / "skull.npz"
     arrays = read_arrays(file)
@@ -44,17 +45,17 @@ def build_skull(
     kept = load("head").landmarks
     own = head.landmarks
     bare = np.arange(len(head.vertices))
-    # There are no landmarks above and behind these; the ears lie aside [mm].
+    # No landmarks lie on the top and the back of the head; ears are left out [mm].
     is_behind = (known[:, 2] < -20.0) & (abs(known[:, 0]) < 65.0)
     is_far = (known[:, 1] > 55.0) | is_behind
     has_built_in_vertices = hasattr(head, "anatomy") and len(head.vertices) == len(known)
     if has_built_in_vertices:
         ears = [row for name, row in load("head").rings.items() if "ear_" in name]
-        bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
+        bare = np.setdiff1d(bare, np.concatenate(ears))  # ears have no bone
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
     else:
-        far = np.flatnonzero(is_far & (known[:, 1] > -40.0))  # [mm]: no cranium lies below
+        far = np.flatnonzero(is_far & (known[:, 1] > -40.0))  # [mm]; the cranium ends there
         ways = known[far] - arrays["condyles"]
         is_seen, nearest = _same_directions(ways, head.vertices - pivots["mandible"])
         kept = np.append(kept, far[is_seen])
@@ -65,20 +66,20 @@ def build_skull(
     )
     normals = vertex_normals(head.vertices, head.faces)[bare]
     parts = {}
-    # In sRGB: in hollows, outside.
+    # Colours in sRGB of hollows and of the outside.
     bone_colours = np.array([0.34, 0.235, 0.165]), np.array([0.90, 0.85, 0.735])
     colours = {
         "nose": (np.array([0.50, 0.42, 0.40]), np.array([0.80, 0.82, 0.80])),
         "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
     }
     brows = head.vertices[head.landmarks[17:27], 1].max()
-    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles: the cranium is free there, too
+    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles: pushed, too
     for name in names:
         faces = arrays[f"{name}_faces"].T.astype(np.int32)  # each row is a step from the one before
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]
         points = warp.points(0.02 * arrays[f"{name}_vertices"].T)  # integers to mm
-        if name == "cranium":  # landmarks say little of its top, back and sides
+        if name == "cranium":  # few landmarks hold its top, back and sides
             free = np.maximum(points[:, 1] - brows, back - points[:, 2])
             points = _under_skin(points, free, head.vertices[bare], normals)
         dark, bright = colours.get(name, bone_colours)
@@ -89,10 +90,10 @@ def build_skull(
 
 
 def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
-    """Find vertices in the same directions from within the cranium.
+    """Find the vertices that lie in given directions from the middle of the cranium.
 
-    ways: (n, 3), seen: (m, 3), places from the condyles [mm]. Returns flags of ways with a vertex,
-    (n,), and numbers of the nearest ones, (n,).
+    ways: (n, 3) gives the directions, seen: (m, 3) the vertices, both from the condyles [mm].
+    Returns flags of directions with a vertex, (n,), and numbers of the nearest vertices, (n,).
     """
     centre = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles
     apart = scipy.spatial.distance.cdist(ways - centre, seen - centre, "cosine")
@@ -102,14 +103,14 @@ def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
 def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Floats64) -> Floats64:
     """Push points of bone inward where they would leave the skin.
 
-    points: (n, 3) [mm]. free: (n,) depth of each inside the part that is pushed [mm]. skin,
-    normals: (m, 3) its vertices and their normals.
+    points: (n, 3) [mm]. free: (n,) distance of each point inside the pushed region [mm]. skin,
+    normals: (m, 3) vertices of the skin and their normals.
     """
     neighbour_count = 6
     away, near = scipy.spatial.cKDTree(skin).query(points, k=neighbour_count)
     shares = 1.0 / np.maximum(away, 1.0) ** 2
-    fade_depth = 10.0  # [mm] of a soft edge
-    most_distance = 40.0  # [mm] of skin that counts
+    fade_depth = 10.0  # [mm] over which the push begins
+    most_distance = 40.0  # [mm] from bone to the skin; farther bone is not pushed
     pushed = np.clip(free / fade_depth, 0.0, 1.0) * (away[:, 0] < most_distance)
     shares *= (pushed / shares.sum(axis=1))[:, None]
     skin_thickness = 2.0  # [mm] on bone
@@ -119,10 +120,10 @@ def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Float
 
 
 def neck_sections(head: Any) -> list[Part]:
-    """Parts that close the cut of a neck, seen from above; head: with vertices and landmarks."""
+    """Parts that close the cut through a neck; head: has vertices, faces and landmarks."""
     chin = head.vertices[head.landmarks[8], 1]
     parts = []
-    # Radius share, and colour.
+    # Share of the radius, and colour.
     rings = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
@@ -139,7 +140,7 @@ def _part(name: str, points: Floats64, faces: Any, colours: Floats64, bone: str)
     places, normals, inks = (
         each.astype(np.float32) for each in (points, vertex_normals(points, faces), colours)
     )
-    # Other parts move with the bone of their name.
+    # Parts that are not listed move with the bone of the same name.
     bone_of_part = {"nose": "cranium", "throat": "cranium", "spine": "neck"}
     bone_shine = 0.28
     return Part(name, places, normals, faces, inks, bone_of_part.get(bone, bone), bone_shine)

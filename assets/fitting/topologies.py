@@ -1,9 +1,9 @@
-"""Heads with known vertex numbers: their 68 landmarks need no file.
+"""Recognise heads of known topologies, whose 68 landmarks need no file.
 
-A topology is recognised by its counts of vertices and triangles, by edges between vertices, and by
-lengths of these edges. The counts are those of a whole file or of one piece, so eyes, teeth and
-helpers may be missing. topologies.toml has the included topologies; users add others in JSON files,
-one topology each:
+A topology is recognised by its counts of vertices and triangles, by some edges, and by lengths of
+these edges. The counts are of a whole file or of one piece, so eyes, teeth and helper objects may
+be missing. topologies.toml has the included topologies. Users add others in JSON files, one
+topology in each:
 
     {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
 
@@ -41,9 +41,9 @@ OUTER_EYE_CORNERS = (36, 45)  # landmarks
 class Topology(Record):
     """A known arrangement of vertices.
 
-    counts: numbers of vertices and of triangles, in pairs, of the whole file or one piece.
-    landmarks: vertex numbers from 0, of the file or within the piece; 68 of them.
-    edges: two vertices, and their distance as a share of that of the outer eye corners.
+    counts: pairs of numbers of vertices and triangles, of the whole file or one piece.
+    landmarks: 68 vertex numbers from 0, in the file or within the piece.
+    edges: two vertices, and their distance as a share of the distance of the outer eye corners.
     """
 
     name: str
@@ -80,12 +80,12 @@ class KnownHead:
 
 
 def topologies_folder() -> Path:
-    """The folder of a user's own topologies; it may be missing."""
+    """The folder of a user's own topologies, which may be missing."""
     return configuration_folder() / "topologies"
 
 
 def recognised(mesh: Mesh) -> KnownHead | None:
-    """The known head that a mesh is, or contains as a piece; None for other meshes.
+    """Recognise the known topology of a mesh or of one of its pieces; None without one.
 
     Raises AssetError for an unusable file among the user's topologies.
     """
@@ -99,7 +99,7 @@ def recognised(mesh: Mesh) -> KnownHead | None:
 
 
 def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
-    """Vertices in order and the number of triangles: of each piece, then of the whole mesh."""
+    """Vertex numbers and the count of triangles of each piece, then of the whole mesh."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
     for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
@@ -117,7 +117,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
     right, left = numbers[topology.landmarks][list(OUTER_EYE_CORNERS)]
     width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
     length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
-    most_off = 3.0  # times longer or shorter: faces differ
+    most_off = 3.0  # factor between lengths on different faces
     is_like = (length < most_off * share * width) & (length * most_off > share * width)
     count = len(mesh.vertices)
     sides = sides_of(mesh.faces)

@@ -1,4 +1,4 @@
-"""From head to head: similarity by landmarks, thin-plate warp, nearest places on a surface.
+"""Map one head to another: similarity by landmarks, thin-plate warp, nearest places.
 
 The warp takes the built-in head's landmarks exactly to those of another head, and bends the space
 in between as little as possible. The nearest point of the warped skin then gives depth of bone,
@@ -37,9 +37,9 @@ class Similarity:
 
     @classmethod
     def between(cls, source: Floats64, target: Floats64) -> Similarity:
-        """The similarity that brings points (n, 3) nearest to others; it may be mirrored.
+        """The similarity that moves `source` nearest to `target`, both (n, 3).
 
-        That happens where `target` is the mirror image of `source`.
+        It mirrors if `target` is the mirror image of `source`.
         """
         middle = source.mean(axis=0)
         wanted = target.mean(axis=0)
@@ -57,7 +57,7 @@ class Similarity:
 
     @property
     def inverse(self) -> Similarity:
-        """The similarity back."""
+        """The inverse similarity."""
         back = self.rotation.T / self.scale
         return Similarity(1.0 / self.scale, self.rotation.T, -back @ self.shift)
 
@@ -71,17 +71,19 @@ class Similarity:
 
 
 class ThinPlateSpline:
-    """The smoothest deformation of space that takes some points to others, or near them.
+    """The smoothest deformation of space that moves some points to others, or near them.
 
-    It is a sum of distances from the points and a linear map. `scipy.interpolate.RBFInterpolator`
-    with the kernel "linear" gives the same, but takes several times as long.
+    It is a weighted sum of distances from the points, and a linear map.
+    `scipy.interpolate.RBFInterpolator` with the kernel "linear" gives the same, but takes several
+    times as long.
     """
 
     def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:
-        """Points (n, 3) each, not in one plane; the first of equal points of `source` counts.
+        """Fit the deformation from `source` to `target`, both (n, 3), not in one plane.
 
-        give: smoothing; points may miss their targets more where it is larger, one number or (n,)
-        [unit of `source`]. Raises LinAlgError for points in a plane.
+        Of equal points in `source`, the first counts. give: smoothing, one number or (n,) [unit of
+        `source`]; where it is larger, points may miss their targets by more. Raises LinAlgError for
+        points in a plane.
         """
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
         self._source = np.asarray(source[first], dtype=np.float64)
@@ -105,13 +107,13 @@ class ThinPlateSpline:
     def points(self, points: npt.ArrayLike) -> Floats64:
         """Move points (n, 3)."""
         places = np.asarray(points, dtype=np.float64)
-        at_once = 128  # caches hold their rows
+        at_once = 128  # points whose rows fit into the caches
         parts = range(0, len(places), at_once)
         moved = [self._rows(places[k : k + at_once]) @ self._weights for k in parts]
         return np.concatenate([np.empty((0, 3)), *moved])
 
     def _rows(self, places: Floats64) -> Floats64:
-        """What the weights are multiplied by, for each of places (n, 3)."""
+        """The factors of the weights at places (n, 3), shape (n, count of points + 4)."""
         count = len(self._source)
         rows = np.empty((len(places), count + 4))
         np.negative(distances_between(places, self._source), out=rows[:, :count])
@@ -123,9 +125,9 @@ class ThinPlateSpline:
 def nearest_on(
     points: Floats64, normals: Floats64, vertices: Floats64, faces: Integers32
 ) -> SurfacePoints:
-    """Feet of points (n, 3) on a mesh; surfaces that face away from a point count as farther.
+    """Nearest places of points (n, 3) on a mesh; surfaces with opposite normals count as farther.
 
-    So points of the lower lip find the lower lip even if the upper one is nearer.
+    So points of the lower lip find the lower lip even if the upper lip is nearer.
     """
-    wrong_side_distance = 12.0  # [mm] added to the distance of a surface that faces away
+    wrong_side_distance = 12.0  # [mm] added to the distance of a surface with an opposite normal
     return closest_points(points, vertices, faces, normals, wrong_side_distance)
