@@ -22,7 +22,7 @@ from risorius.geometry.normals import vertex_normals
 from ..scenes import Face
 
 ROWS = 22  # places along a band
-AROUND = 16  # places around a band's cross section
+AROUND = 12  # places around a band's cross section
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
