@@ -123,6 +123,7 @@ def _lid_vertices(
     eyes = rig.eyes
     axes = [_up_and_forward(landmarks, ball) for ball in eyeballs]
     joined = _OneEye(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    apertures = np.array([part.opening.max() for part in parts])
     areas = rig.tissue.stiffness_scale * surface.areas[joined.vertex]
     hold = eyes.lid_stiffness * areas * joined.weight
     vertices = LidVertices(
@@ -134,7 +135,7 @@ def _lid_vertices(
         sink=joined.sink,
         fold=joined.fold,
         opening=joined.opening,
-        aperture=np.array([part.opening.max() for part in parts]),
+        aperture=apertures,
         along=joined.along,
         fold_hold=eyes.fold_stiffness * areas * np.maximum(joined.fold - joined.weight, 0.0),
         shut_hold=hold * joined.upper,
@@ -146,7 +147,8 @@ def _lid_vertices(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_share=np.array([gaze_share_of(ball.radius) for ball in eyeballs]),
+        gaze_share=np.array([gaze_share_of(ball.radius) for ball in eyeballs])
+        * opened_share_of(apertures),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
@@ -162,6 +164,16 @@ def gaze_share_of(radius: float) -> float:
     """
     most_radius = 12.8  # mm
     return min(1.0, most_radius / radius)
+
+
+def opened_share_of(apertures: Floats64) -> Floats64:
+    """Return how far lids follow the gaze, by their greatest opening [rad] at rest, shape (eyes,).
+
+    Lids that are shut at rest stay shut: a look upward would open them. From 0 to 1.
+    """
+    shut, narrow = 0.08, 0.16  # rad; 0.08 is a millimetre on a human ball
+    share: Floats64 = smoothstep((apertures - shut) / (narrow - shut))
+    return share
 
 
 def _lift(lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool) -> Floats64:

@@ -51,6 +51,7 @@ from .mesh_validation import (
     SkinPiece,
     check_manifold,
     check_openings,
+    notes_of_shut_eyes,
     pieces_of,
     skin_of,
     vertices_of_pieces,
@@ -208,7 +209,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     target = similarity.points(points)
     pieces = tuple(similarity.points(each) for each in _beside_skin(mesh.vertices, faces, skin))
     jaw = _jaw_of(known, skin, target)
-    notes = mesh.notes
+    notes = mesh.notes + notes_of_shut_eyes(skin)
     simplified = None
     if len(skin.faces) > simplifying.MOST_SIMULATED:
         coarse = simplifying.simplified(skin, target)

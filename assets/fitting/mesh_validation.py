@@ -24,6 +24,13 @@ from ..topology import border_vertices, unique_points
 
 MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # with fewer, eyes and mouth have no shape (chosen)
+# A path along the skin leads from lip to lip, or from lid to lid, around a corner of the opening.
+# If the shortest path is shorter than this share of the path around a corner, skin joins them. A
+# bag behind them may also join them, but its path is longer.
+JOINED_SHARE = 0.6
+# Landmarks of each eye: above and below, and corners.
+LID_PAIRS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}
+EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}
 
 
 class CoveredError(AssetError):
@@ -183,26 +190,50 @@ def check_openings(skin: SkinPiece) -> None:
     ends = skin.landmarks[list(corners_of_lips)]
     across = from_above[under]
     around = (from_above[ends] + from_below[ends]).min()
-    # A path along the skin leads from lip to lip around a corner of the mouth. If the shortest path
-    # is shorter than this share of the path around a corner, the lips are welded. A bag behind the
-    # lips may also join them, but its path is longer.
-    welded_share = 0.6
-    if over == under or across < welded_share * around:
+    if over == under or across < JOINED_SHARE * around:
         raise ShutMouthError(
             "the mouth is shut: skin joins landmarks "
             f"{middle_of_lips[0]} and {middle_of_lips[1]} over {across:.0f} mm; "
             "cut the mesh open between the lips"
         )
     corners = skin.vertices[skin.faces]
-    # Landmarks above and below.
-    lids = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}
-    for side, pairs in lids.items():
+    for side, pairs in LID_PAIRS.items():
         middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
-        if _is_covered(corners, middle):
+        if _is_covered(corners, middle) and not _is_slit(skin, side):
             raise CoveredError(
                 f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
                 f"{pairs[0][1]}; cut the mesh open between the lids (a head with its eyes open)"
             )
+
+
+def notes_of_shut_eyes(skin: SkinPiece) -> tuple[str, ...]:
+    """A line that reports eyes whose lids touch at rest; none if all are open. [mm]"""
+    sides = [side for side in LID_PAIRS if _is_slit(skin, side)]
+    if not sides:
+        return ()
+    eyes = "eyes are" if len(sides) > 1 else "eye is"
+    return (
+        f"its {' and '.join(sides)} {eyes} shut at rest, so these lids hardly move; for blinks and "
+        "gaze, open them in a modelling program",
+    )
+
+
+def _is_slit(skin: SkinPiece, side: str) -> bool:
+    """Whether the lids of an eye touch, and join only around its corners."""
+    most_gap = 1.5  # [mm] between touching lids: their margins are rounded
+    for above, below in LID_PAIRS[side]:
+        ends = skin.landmarks[list(EYE_CORNERS[side])]
+        over, under = skin.landmarks[[above, below]]
+        between = skin.vertices[over] - skin.vertices[under]
+        if np.linalg.norm(between[1:]) > most_gap:  # a shut lid slides aside
+            return False
+        from_above, from_below = path_lengths(
+            skin.vertices, skin.faces, skin.landmarks[[above, below]]
+        )
+        around = (from_above[ends] + from_below[ends]).min()
+        if from_above[under] < JOINED_SHARE * around:
+            return False
+    return True
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:

@@ -8,7 +8,7 @@ import pytest
 from numpy.linalg import norm
 from pytest import approx
 
-from risorius import assets
+from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.fitting.mouth_walls import FittedSkin, opened_jaws
 from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
@@ -180,3 +180,37 @@ def test_a_closed_socket_has_no_other_flesh(fitted):
     parts = with_eyelid_rims(head.parts, far, triangle, head.eyes)
     assert {part.name for part in head.parts} - {part.name for part in parts} == {"eye_corners"}
     assert "eye_corners" in {part.name for part in fitted.parts}
+
+
+@pytest.fixture(scope="module")
+def sleeper() -> FittedHead:
+    """A head whose lids touch at rest: the built-in one at the end of a blink."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    simulation.controls.set("blink", 1.0)
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    return fit(Mesh(shape(simulation.positions), head.faces), head.landmarks)
+
+
+def test_shut_eyes_are_accepted_and_reported(sleeper):
+    """Such a head was refused: "the right eye has no opening"."""
+    (note,) = [each for each in sleeper.notes if "shut" in each]
+    assert "right and left eyes are shut at rest" in note
+
+
+@pytest.mark.parametrize("name", ["eyeBlink", "eyeWide", "eyeLookUp", "eyeLookDown"])
+def test_lids_of_shut_eyes_hardly_move(sleeper, name):
+    """No lid moves by more than 2 mm, and skin lies before the eyeballs."""
+    simulation = sim.create(sleeper)
+    before = simulation.positions.copy()
+    for side in ("Left", "Right"):
+        simulation.controls.set(f"{name}{side}", 1.0)
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    assert norm(simulation.positions - before, axis=1).max() < 2.0
+    for eye in sleeper.eyes:
+        grid = eye.radius * np.linspace(-0.7, 0.7, 15)
+        places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2) + eye.centre[:2]
+        skin = simulation.positions[sleeper.faces]
+        assert _meets(places, skin[(skin[:, :, 2] > eye.centre[2]).all(axis=1)]).all()
