@@ -1,4 +1,4 @@
-"""Other persons than the built-in head: of other shape, other skin, other eyes, other hair.
+"""Make persons: heads with another shape, skin, eyes and hair than the built-in head.
 
     person = make_person(sample_identity(7))        # the shape of a number's person
     person = coloured(person, angle=-20.0, irises="brown")

@@ -46,7 +46,7 @@ from .relief import with_reliefs
 from .sternomastoid import sternomastoids_of
 
 GREY_HAIR = (0.54, 0.52, 0.49)
-LOCKS_LIGHTER = 1.2  # than painted hair: no other hair shades them
+LOCKS_LIGHTER = 1.2  # relative to painted hair, because no other hair shades them
 BEHIND = 30.0  # [mm] from the hairline back, in the map of the scalp
 IN_FRONT = 10.0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
@@ -98,13 +98,13 @@ def recoloured(
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
-    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError. blood: as a share of what such skin has;
-    0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
-    it, so that no scalp shines through; None: hair is painted alone, from the built-in hairline on.
-    fringe: how much its hem is single hairs, 0 to 1. shrink: this many texels, each way, become
-    one, a power of 2 up to 16.
+    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError. blood: amount relative to most skin of
+    this tone; 0.7 is pale, 1.3 flushed. haired_as: ITA that decides the colour of hair standing on
+    the scalp, which is then painted in this colour; None: all hair is painted, from the built-in
+    hairline on. fringe: share of single hairs at the hairline, 0 to 1. shrink: factor of fewer
+    texels in each direction, a power of 2 up to 16.
     """
-    # numba, which an import does not wait for
+    # imports numba, which takes long
     from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
 
     if not DARKEST <= angle <= LIGHTEST:
@@ -233,7 +233,7 @@ def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
 
 
 def _beside_light_skin(angle: float) -> Floats64:
-    """Light from skin of a tone [ITA], relative to light skin, up to 1, shape (3,)."""
+    """Light from skin of a tone (ITA [deg]), relative to light skin, at most 1, shape (3,)."""
     tints = _tints()
     light_skin = 41.0  # ITA from which skin is called light
     lost = np.zeros((2, 3))

@@ -1,4 +1,4 @@
-"""The map of a person's furrows: lines of its own, and folds beside the mouth as deep as its own.
+"""The map of a person's furrows: its lines, and the folds beside its mouth.
 
 Skin swells between two lines. Below the eyes, on nose, lips and chin all people have the furrows
 of the built-in head, whose map was drawn by eye.
@@ -64,7 +64,7 @@ class _Fold(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """A map without lines of a person's own, shape (H, H, 4), and where these go."""
+    """A map without a person's lines, shape (H, H, 4), and the regions of these lines."""
 
     plain: Image
     forehead: _Region
@@ -100,7 +100,7 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
 
 
 def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
-    """What lines add to slopes and depth of a region, shape (h, w, 3), in bytes.
+    """Additions of lines to the slopes and depth of a region, shape (h, w, 3), in bytes.
 
     per_slope: 1 over the greatest slope [1/mm for one texel].
     """
@@ -118,7 +118,7 @@ def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Float
 
 
 def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
-    """The sample of a place, and which part of the way to the next one it lies."""
+    """Place along a line as a number of samples, with a fraction between two samples."""
     low, high = reach
     return (np.clip(along, low, high - 2.0 * STEP) - low) / STEP
 

@@ -68,7 +68,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         depth = deepest * random.uniform(0.65, 1.0) * whole * reach * shown
         if random.random() < 0.25 + 0.5 * lines.broken:
             gap = random.uniform(-20.0, 20.0)
-            over = random.uniform(2.0, 8.0)  # [mm] over which both are there
+            over = random.uniform(2.0, 8.0)  # [mm] over which both halves overlap
             step = random.choice([-1.0, 1.0]) * random.uniform(0.15, 0.26) * spread
             left = smooth_step(gap + over, gap - 5.0, x)
             right = smooth_step(gap - over, gap + 5.0, x)
@@ -86,7 +86,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
-    """How much of a line is there, 0 to 1; beside: how far places are from the middle [mm]."""
+    """Strength of a line at each place, 0 to 1; beside: distance from the middle [mm]."""
     reach = random.uniform(0.8, 1.25)
     match spread:
         case Spread.WHOLE:

@@ -28,7 +28,7 @@ class Spread(Enum):
 
 
 class Fan(Enum):
-    """Which part of a whole fan somebody's crow's feet are."""
+    """The part of a whole fan that a person's crow's feet fill."""
 
     WHOLE = "whole"
     LOWER = "lower"
@@ -37,7 +37,7 @@ class Fan(Enum):
 
 
 class Lines(NamedTuple):
-    """Somebody's lines of expression; depths are shares of the built-in head's.
+    """The lines of expression of a person; depths are relative to the built-in head's.
 
     seed: of courses and breaks. forehead: number of lines across it. spread: where they are. dip:
     how far they hang down in the middle [mm]. broken: how much of them is missing, 0 to 1. frown:
@@ -64,7 +64,7 @@ class Lines(NamedTuple):
 
 
 def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
-    """The lines of somebody of a sex and an age [years]."""
+    """Random lines for a sex and an age [years]."""
     seed = int(random.integers(2**31))
     spread, frown, fan, dip, broken, uneven, reach = random.uniform(0.0, 1.0, 7).tolist()
     count, feet, *deep = np.clip(random.normal(size=6), -2.0, 2.0).tolist()

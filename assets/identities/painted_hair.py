@@ -1,4 +1,4 @@
-"""Hair that is painted on the scalp, under hair that stands on it: no skin shines through.
+"""Paint hair on the scalp below standing hair, so that no skin shows through.
 
 Near the hairline it thins out as single hairs.
 """
@@ -25,7 +25,7 @@ def grown_over(behind: Floats32) -> Floats32:
 
 
 def fringe_of(cut: Cut | Fall) -> float:
-    """How much single hairs are seen at the hairline: less where none is combed over it."""
+    """Share of single hairs at the hairline; smaller where hair is not combed over it."""
     is_combed_down = isinstance(cut, Cut) and cut.whorl[2] < 0.0 and not cut.knot
     return 1.0 if is_combed_down else 0.25
 

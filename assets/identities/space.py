@@ -68,14 +68,14 @@ class Identity:
     """A face in numbers.
 
     sex, age [years]: that its weights were drawn for.
-    hair: how long it is, beside that of its cut.
+    hair: length relative to the cut's.
     cut: name of its cut (`CUTS` of hair.py).
     weights: of the modes, in deviations from the mean of people (space.py).
-    unevenness: by how much they are more on the left and less on the right.
+    unevenness: added to weights on the left side, and subtracted on the right side.
     covered: how much of the iris the upper lid covers [mm].
     corners: how far above the middle of the lips' line those of the mouth lie at rest [mm].
     brows: how far up the brows lie [mm].
-    furrows: how deep those of age are, beside the usual ones.
+    furrows: depth of furrows of age, relative to most people of that age.
     seen_lid: how much of the upper lid's skin is seen below its crease [mm]; below 0: none.
     hooding: how much less of it is seen at the outer corner [mm].
     smile: which muscles join in it.
