@@ -3,9 +3,9 @@
     pip install '.[mujoco]'
     python examples/in_mujoco.py
 
-A square sheet is held at its border and sags. MuJoCo simulates 128 triangles. Their vertices carry
-a finer mesh twice: as bones of a MuJoCo skin, which is flat on each triangle, and through
-`refine.Embedding`. A simulation of four times the triangles gives the true places of the finer
+A square sheet is held at its border and sags. MuJoCo simulates 128 triangles. Their vertices move a
+finer mesh in two ways: as the bones of a MuJoCo skin, which is flat on each triangle, and through
+`refine.Embedding`. A simulation with four times the triangles gives the true positions of the finer
 mesh.
 """
 
@@ -48,7 +48,7 @@ def cloth(cells: int) -> mujoco.MjSpec:
 
 
 def add_skin(spec: mujoco.MjSpec, fine: Points, triangles: Faces) -> None:
-    """Bind `fine` to the bodies of the coarse vertices, by its places on the flat triangles."""
+    """Bind `fine` to the bodies of the coarse vertices, by weights on flat triangles."""
     model = spec.compile()
     rest, faces = sheet_of(model)
     places = closest_points(fine, rest, faces)

@@ -4,9 +4,9 @@
     python examples/in_newton.py
 
 A square sheet is held at its border and sags. Newton simulates 128 triangles, on the processor.
-They carry a finer mesh twice: as a visual mesh of Newton, which is flat on each triangle, and
-through `refine.Embedding`. A simulation of four times the triangles gives the true places of the
-finer mesh.
+They move a finer mesh in two ways: as Newton's visual mesh, which is flat on each triangle, and
+through `refine.Embedding`. A simulation with four times the triangles gives the true positions of
+the finer mesh.
 """
 
 import newton

@@ -1,6 +1,6 @@
-"""Faces cut out of pictures, with their 68 points: from a data set of ours, and from photographs.
+"""Cut faces with their 68 points out of the pictures of a data set, and out of photographs.
 
-`train_landmarks.py` learns from the first and is tested on the second. A photograph with a `.pts`
+`train_landmarks.py` trains on the data set and tests on the photographs. A photograph with a `.pts`
 file beside it, as in 300-W, has one face, marked by hand. In other photographs dlib finds the
 faces, and its points serve as the truth.
 """
@@ -21,12 +21,12 @@ from risorius.faces import Faces
 
 Face = tuple[np.ndarray, np.ndarray]  # a picture (3, 144, 144) 0..255, points (68, 2) from -1 to 1
 
-SIDE = 96  # of the picture that a network sees [pixels]
-WIDE = 144  # of the stored pictures; the network's pictures are turned and moved within them
+SIDE = 96  # side of the network's pictures [pixels]
+WIDE = 144  # side of stored pictures, in which the network's pictures are turned and moved
 
 
 def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
-    """The face around the known points 17 to 67. points: (68, 2) [pixels]."""
+    """Cut out the face around points 17 to 67. points: (68, 2) [pixels]."""
     low = points[17:].min(axis=0)
     high = points[17:].max(axis=0)
     size = (high - low).max()
@@ -42,7 +42,7 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
 
 
 def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
-    """Read our samples. is_on_bone: whether jaw points are the rig's landmarks, not the outline."""
+    """Read samples of a set. is_on_bone: use the rig's jaw landmarks in place of the outline's."""
     found = []
     for number in numbers:
         sample = faces[number]
@@ -57,14 +57,14 @@ def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
 
 @functools.cache
 def opened_dlib() -> tuple[Any, Any]:
-    """dlib's detector of faces, and its points in a face."""
+    """dlib's detector of faces, and its predictor of 68 points."""
     import dlib
 
     return dlib.get_frontal_face_detector(), dlib.shape_predictor(str(packaged_model()))
 
 
 def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
-    """The 68 points [pixels] of each face, 80 pixels or higher once doubled; none without dlib."""
+    """The 68 points [pixels] of each face, in a picture doubled this often; [] without dlib."""
     if importlib.util.find_spec("dlib") is None:
         return []
     detect, predict = opened_dlib()
@@ -73,14 +73,14 @@ def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
 
 
 def points_of_dlib(faces: list[Face]) -> np.ndarray:
-    """dlib's points in cut-out faces, (n, 68, 2) from -1 to 1; NaN where it finds none."""
+    """dlib's points in cut-out faces, (n, 68, 2) from -1 to 1; NaN if it finds no face."""
     found = [read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1) for cut, _ in faces]
     nothing = np.full((68, 2), np.nan)
     return np.stack([(each or [nothing])[0] for each in found]) / (WIDE / 2) - 1.0
 
 
 def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:
-    """The faces of photographs: those marked by hand, and those that dlib reads."""
+    """Faces in photographs: faces with a .pts file, and faces that dlib finds."""
     by_hand = []
     by_dlib = []
     kinds = (".jpg", ".jpeg", ".png", ".ppm")

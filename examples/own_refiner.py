@@ -1,11 +1,11 @@
-"""A refiner of your own, registered from outside: it cuts triangles in four when edges grow.
+"""Write and register a refiner of your own, which cuts triangles in four when edges grow.
 
     python examples/own_refiner.py
 
 It derives from `refine.BaseRefiner`, which binds the mesh, checks arguments, and carries texture
-coordinates and attributes. This refiner cuts all edges or none, and does not smooth. After
-`refiners.register` the whole program knows it by name. A separate package needs no call, but these
-lines in its pyproject.toml
+coordinates and attributes. This refiner splits all edges or none, and does not smooth. After
+`refiners.register` the whole program finds it by name. A separate package needs these lines in its
+pyproject.toml instead:
 
     [project.entry-points."risorius.refiners"]
     quarters = "my_package:Quarters"
@@ -32,7 +32,7 @@ from risorius.refine import (
 
 
 class Quarters(BaseRefiner):
-    """Cuts every triangle of the mesh in four as soon as one of its edges is too long."""
+    """Cuts all triangles in four as soon as any edge of the mesh is too long."""
 
     def __init__(
         self,
@@ -42,7 +42,7 @@ class Quarters(BaseRefiner):
         longest: float = 1.5,
         **values: Unpack[Values],
     ) -> None:
-        """`longest`: length at which all is cut, over the longest edge at rest."""
+        """`longest`: limit of the longest edge, relative to its length at rest."""
         super().__init__(faces, rest_positions, **values)
         self._limit = longest * self._longest_edge(self.rest_positions)
         # Wedges and attribute edges are vertices and edges, counted once for each side of a texture
@@ -65,12 +65,12 @@ class Quarters(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Wedges, and the middle of each attribute edge."""
+        """Number of wedges, plus one midpoint for each attribute edge."""
         return len(self.connectivity.wedge_vertices) + len(self.connectivity.attribute_edges)
 
     @property
     def triangle_capacity(self) -> int:
-        """Four for each triangle, but one for a triangle that names a vertex twice."""
+        """Four for each triangle, but one for a degenerate triangle."""
         return len(self._cut)
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -100,7 +100,7 @@ class Quarters(BaseRefiner):
         return vertex_count, len(triangles)
 
     def origins(self) -> Origins:
-        """A new point is half of one end and half of the other."""
+        """The weights of new points: one half for each end of an edge."""
         if not self.splits.any():
             return super().origins()
         a, b = self.edges[self.connectivity.attribute_edges].T
@@ -124,7 +124,7 @@ def main() -> list[int]:
     for stretch in (1.0, 1.5, 2.0, 3.0):
         positions = rest * [stretch, 1.0, 1.0]
         mesh = refiner.refine(positions)
-        check(refiner, mesh, positions)  # reports mistakes of a refiner
+        check(refiner, mesh, positions)  # raises an error if the refiner is wrong
         counts.append(len(mesh.triangles))
     return counts
 

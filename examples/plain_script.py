@@ -2,8 +2,8 @@
 
     python examples/plain_script.py [FILE.obj]
 
-A tube of 384 triangles bends to more than half a ring and back. It needs `risorius.refine`, which
-only needs numpy and numba.
+A tube of 384 triangles bends to more than half a ring and back. The script needs only
+`risorius.refine`, which needs only numpy and numba.
 """
 
 import sys
@@ -56,7 +56,7 @@ def write_obj(path: Path, mesh: refine.RefinedMesh) -> None:
 
 
 def main(target: Path) -> list[int]:
-    """Refine 60 frames, write the most bent one, return the triangles of each."""
+    """Refine 60 frames, write the most bent frame, return the number of triangles of each."""
     rest, faces = tube()
     refiner = refine.create("kahler", faces, rest)  # once per mesh
     counts = []

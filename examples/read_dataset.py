@@ -1,4 +1,4 @@
-"""Print the content of a data set for training: samples by persons, and frequencies of units.
+"""Print the content of a training data set: samples per person, and how often units occur.
 
     risorius dataset --count 1000 --passes depth,segmentation -o faces
     python examples/read_dataset.py faces

@@ -5,7 +5,7 @@
     python examples/train_landmarks.py faces photographs
 
 An error is the mean distance in hundredths of the distance between the outer corners of the eyes.
-As in tests on 300-W, known points give the place of the face; see `landmark_faces.py`.
+As in tests on 300-W, faces are cut out by their known points; see `landmark_faces.py`.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
 
 
 def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tuple[Tensor, Tensor]:
-    """Pictures and points for the network: their middle, or the part in `changes`.
+    """Pictures and points for the network: the middle of each picture, or its part in `changes`.
 
-    changes: for each, a map from places in the result to places in the picture, shape (n, 2, 3).
+    changes: an affine map from the result to the picture, for each picture, shape (n, 2, 3).
     """
     middle = torch.tensor([[SIDE / WIDE, 0.0, 0.0], [0.0, SIDE / WIDE, 0.0]])
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
@@ -87,14 +87,14 @@ def _recoloured(pictures: Tensor) -> Tensor:
 
 
 def _some(pictures: Tensor) -> list[int]:
-    """Numbers of about four tenths of the pictures."""
+    """Indices of about four tenths of the pictures, chosen at random."""
     is_taken = torch.rand(len(pictures)) < 0.4
     numbers: list[int] = torch.nonzero(is_taken).flatten().tolist()
     return numbers
 
 
 def _blur(pictures: Tensor) -> None:
-    """Blur some pictures like small ones."""
+    """Blur some pictures by reducing and enlarging them."""
     for number in _some(pictures):
         small = int(torch.randint(28, 80, ()))
         picture = pictures[number : number + 1]
@@ -112,13 +112,14 @@ def _cover(pictures: Tensor) -> None:
 
 
 def block(before: int, after: int, stride: int = 1) -> nn.Sequential:
-    """A convolution with a norm, cut off at 0."""
+    """A convolution with batch normalisation and ReLU."""
     convolution = nn.Conv2d(before, after, 3, stride, padding=1, bias=False)
     return nn.Sequential(convolution, nn.BatchNorm2d(after), nn.ReLU(inplace=True))
 
 
 class Network(nn.Module):
-    """Heat maps of 24 x 24, whose means are the points (Sun et al. 2018, Integral regression)."""
+    """Predicts points as means of 24 x 24 heat maps (Sun et al. 2018, "Integral human pose
+    regression")."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -140,7 +141,7 @@ class Network(nn.Module):
 
 
 def train(faces: list[Face], epochs: int, is_plain: bool) -> Network:
-    """A network that learned from faces. is_plain: whether it sees unvaried faces."""
+    """Train a network on faces. is_plain: train without random variations of the faces."""
     pictures, points = tensors(faces)
     network = Network().to(memory_format=torch.channels_last)  # faster on a processor
     steps = (len(faces) + 31) // 32
@@ -162,7 +163,7 @@ def train(faces: list[Face], epochs: int, is_plain: bool) -> Network:
 
 
 def percent(found: Tensor, places: Tensor) -> Tensor:
-    """Errors (n, 68) of points (n, 68, 2)."""
+    """Errors (n, 68) of points (n, 68, 2), in percent of the distance between the eyes."""
     apart = (places[:, 36] - places[:, 45]).norm(dim=1, keepdim=True)
     return 100.0 * (found - places).norm(dim=2) / apart
 

@@ -75,9 +75,11 @@ class Faces:
         return {kind: path.read_bytes() for kind, path in names.items() if path.exists()}
 
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
-        """Sample numbers for training and for testing: both not empty, without common persons."""
+        """Numbers of samples for training and testing: two sets without a common person."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
-        count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # with one person, none
+        count = min(
+            max(round(share * len(persons)), 1), len(persons) - 1
+        )  # With one person, no such split exists.
         tested = set(persons[:count])
         is_tested = [int(row["person_number"]) in tested for row in self.rows]
         numbers = range(len(self))
@@ -85,7 +87,7 @@ class Faces:
 
 
 def _members(part: io.BytesIO) -> list[tuple[str, bytes]]:
-    """The files in a part of a tar file, by the ends of their names after the first dot."""
+    """The files in a part of a tar file; a key is the name's part after the first dot."""
     found = []
     with tarfile.open(fileobj=part, mode="r:") as tar:
         for member in tar:

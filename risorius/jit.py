@@ -1,4 +1,4 @@
-"""`njit`: numba's decorator with one set of options, and stored machine code that is never stale.
+"""`njit`: numba's decorator with fixed options, and a store of machine code, never stale.
 
 Numba stores machine code itself (`cache=True`), but only checks one file at a time: when a kernel
 changes that another file calls, old code keeps running. So code is stored in a folder that is named
@@ -7,9 +7,9 @@ versions of numba and Python. After any change everything is compiled again, int
 is `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
 
 Numba reads its folder from `numba.config.CACHE_DIR` once, when it decorates a function. The
-variable is set for that moment only, so kernels of other programs in the same process keep their
-folder. Without a folder that belongs to this user alone, code is compiled in each process, and the
-log reports it once. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly, for debuggers and
+variable is set only during this call, so kernels of other packages in the process keep their
+folder. If no folder belongs to this user alone, code is compiled in each process, and one line in
+the log reports this. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly, for debuggers and
 coverage. Fast-math is off unless a kernel asks for it, so results do not depend on the
 vectorisation of a loop.
 
@@ -110,10 +110,10 @@ def cache_folder() -> Path | None:
 
 
 def _digest() -> str:
-    """Digest of all that machine code depends on, except the processor, which numba checks."""
+    """Digest of everything that affects machine code, except the processor, which numba checks."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     digest.update(Path(__file__).read_bytes())
-    for package in ("geometry", "refine", "render", "sim"):  # either may be absent
+    for package in ("geometry", "refine", "render", "sim"):  # some may be missing
         found = importlib.util.find_spec(f"{__package__}.{package}")
         for folder in (found and found.submodule_search_locations) or ():
             for file in sorted(Path(folder).rglob("[!.]*.py")):  # no hidden files of editors
@@ -126,14 +126,14 @@ def _remove_old(above: Path) -> None:
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
         most_folders = 8  # number of folders of other digests that are kept at any age
-        unused_seconds = 24 * 3600.0  # after which other folders may be removed
+        unused_seconds = 24 * 3600.0  # age after which further folders are removed
         for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
             if used[folder] < time.time() - unused_seconds:
                 shutil.rmtree(folder, ignore_errors=True)
 
 
 class _Compilation(event.Listener):
-    """Logs each kernel of this package that is compiled, and sets the compiler for it.
+    """Logs each kernel of this package that is compiled, and sets numba's compiler options for it.
 
     While numba compiles a function, it also compiles the functions that this function calls.
     """
@@ -142,7 +142,7 @@ class _Compilation(event.Listener):
         self._settings: list[int] = []
 
     def on_start(self, event: event.Event) -> None:
-        """Numba begins to compile any function."""
+        """Log a kernel and set its options; numba calls this before it compiles a function."""
         function = event.data["dispatcher"].py_func
         self._settings.append(_numbas.SLP_VECTORIZE)
         if (function.__module__ or "").partition(".")[0] == __package__:

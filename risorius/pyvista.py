@@ -42,16 +42,16 @@ class PolyDataRefiner:
         Parameters
         ----------
         frame : pyvista.PolyData | array_like
-            The mesh of the frame, with the cells of the mesh at rest, whose data go along; or its
-            points alone, shape `(n_points, 3)`, which carry the data of the mesh at rest.
+            The mesh of the frame, with the same cells as at rest; its data go into the result. Or
+            its points alone, shape `(n_points, 3)`; then the data of the mesh at rest are used.
         view : risorius.refine.View, optional
             The viewpoint, for the criterion `silhouette`.
 
         Returns
         -------
         pyvista.PolyData
-            Triangles with point normals and all data. Those of points are linear along edges and
-            keep their types; integers are rounded. `vtkOriginalCellIds` has the cell of
+            Triangles with point normals and all data. Point data are interpolated linearly along
+            edges and keep their types; integers are rounded. `vtkOriginalCellIds` has the cell of
             each triangle. Raises ValueError for another number of points or cells.
         """
         given = frame if isinstance(frame, pyvista.PolyData) else self._rest
@@ -101,7 +101,7 @@ class PolyDataRefiner:
         Returns
         -------
         PolyDataRefiner
-            It refines other frames, too, with the same points and cells.
+            A refiner that also refines further frames of the same points and cells.
         """
         points = (each.points if isinstance(each, pyvista.PolyData) else each for each in frames)
         splits = splits_of_clip(self._refiner, map(np.asarray, points), view)
@@ -154,11 +154,11 @@ class Cells(NamedTuple):
 
 
 def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
-    """Cut the surface of a mesh into triangles, shape (F, 3), and name the cell of each, (F,).
+    """Cut a mesh's surface into triangles, shape (F, 3); also return the cell of each, (F,).
 
-    Lines, lone points and polygons of less than three points have no surface and drop out. VTK
-    cuts only polygons of more than three points, because its filter returns unwritten memory
-    for lines and lone points. Raises ValueError for cells that name missing points.
+    Lines, lone points and polygons of fewer than three points have no surface and are left out.
+    Only polygons of more than three points go through VTK's filter, because it returns unwritten
+    memory for lines and lone points. Raises ValueError for cells with missing points.
     """
     polygons = _cells_of(mesh.GetPolys(), mesh.n_points)
     strips = _cells_of(mesh.GetStrips(), mesh.n_points)
@@ -253,14 +253,14 @@ class RisoriusAccessor:
         Parameters
         ----------
         rest : pyvista.PolyData, optional
-            The same mesh before it was deformed. Without, this mesh counts as undeformed, and is
+            The same mesh before it was deformed. By default, this mesh counts as undeformed, and is
             refined where it is coarse.
         weld : bool, default: True
             As for `refiner`.
         weld_tolerance : float, optional
             As for `refiner`.
         **options
-            As for `refiner`, but that `blend` is False unless it is given.
+            As for `refiner`, except that `blend` is False by default.
 
         Examples
         --------
@@ -285,20 +285,21 @@ class RisoriusAccessor:
         Parameters
         ----------
         weld : bool, default: True
-            Whether points at one place are one, so that no crack opens between them. False for
-            surfaces that touch at rest and part later. Where points carry data, they part again in
-            the output.
+            Whether points at one place are merged, so that no crack opens between them. Use False
+            for surfaces that touch at rest and separate later. Points with different data are
+            separate again in the output.
         weld_tolerance : float, optional
-            How far apart points may lie that are one, in sizes of the mesh (longest side of its
-            bounds): by default 1e-9, or the last bits of the points' type where that is
-            more. 0 welds points that are equal to the last bit.
+            Largest distance of merged points, relative to the longest side of the mesh's bounds: by
+            default 1e-9, or the rounding error of the points' type if that is larger. 0 welds
+            points that are equal to the last bit.
         **options
-            What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
-            all data go along by themselves. The defaults are `scheme="cubic"` and
-            `criterion="displacement+rest"`, which round coarse places at rest and bent ones;
-            `scheme="loop", criterion="normal"` is the paper's rule. All edges are rounded, sharp
-            ones too, unless `crease_angle` [degrees] is given, which is VTK's feature angle: edges
-            where cells turn by more at rest keep their place, as borders do.
+            The options of `risorius.refine.create_kahler`, except texture coordinates and
+            attributes: all data of the mesh are refined automatically. The defaults are
+            `scheme="cubic"` and `criterion="displacement+rest"`, which round coarse places at rest
+            and bent ones; `scheme="loop", criterion="normal"` is the paper's rule. All edges are
+            rounded, including sharp edges, unless `crease_angle` [degrees] is given. It is VTK's
+            feature angle: edges between cells that differ by a larger angle at rest stay in place,
+            as borders do.
 
         Examples
         --------

@@ -64,14 +64,14 @@ class Record:
     def __get_pydantic_core_schema__(
         cls, source: type[Any], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """The check of pydantic; before it, unknown keys are reported or go to the rest."""
+        """Pydantic's check, after unknown keys were reported or moved to the `Rest` field."""
         check = partial(_known_keys_of, _keys(cls))
         return core_schema.with_info_before_validator_function(check, handler(source))
 
 
 @dataclass(frozen=True)
 class Within:
-    """A rule for a number, or each number of a tuple: finite, from `low` to `high`, not a bool."""
+    """A rule for a number, or for each number of a tuple: finite, from `low` to `high`, no bool."""
 
     low: float
     high: float
@@ -104,9 +104,9 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A rule: exactly one of these values, or of those that a function returns at the first read.
+    """A rule: exactly one of these values, or of those that a function returns once.
 
-    description: the words that an error has in place of a long list of values.
+    description: replaces a long list of values in an error.
     """
 
     allowed: Iterable[Any] | Callable[[], Iterable[Any]]
@@ -134,7 +134,7 @@ class OneOf:
 
 @dataclass(frozen=True)
 class MadeFrom:
-    """A rule for any type: a function makes the value from the file's, or raises ValueError."""
+    """A rule for any type: a function converts the value in the file, or raises ValueError."""
 
     table: Any
     make: Callable[[Any], Any]
@@ -195,7 +195,7 @@ def read(
 ) -> Read:
     """A record, or a value of another type, from the content of a file.
 
-    where: its name in errors, a file or a part of one.
+    where: the name in errors, of a file or of a part of a file.
 
     Raises `error` with one line: where, the value, and the allowed values.
     """
@@ -208,8 +208,8 @@ def read(
 def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
     """Return a record of the allowed entries of a table, and a message for each other entry.
 
-    It is for settings: a file from another version of the program, or written by hand, must not
-    stop this one. Every field has a default; an entry is a key of the table, or of a table within
+    It is for settings: the program must start even if the file comes from another version or was
+    edited by hand. Every field has a default; an entry is a key of the table, or of a table within
     it.
     """
     found: list[str] = []

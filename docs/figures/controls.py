@@ -39,9 +39,11 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     """All views of a control at full value, side by side."""
     turning_units = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
     is_turned = name.removesuffix("_left") in turning_units
-    raised = 11.0  # [mm] of the view above the landmarks: foreheads wrinkle
+    raised = 11.0  # [mm] of the view above the landmarks, because foreheads wrinkle
     target = None if is_turned else scene.framing.focus + np.array([0.0, raised, 0.0])
-    shown_over = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share alone shows nothing
+    shown_over = {
+        "mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}
+    }  # without its other shape, this shape shows nothing
     pose = shown_over.get(name, {name: 1.0})
     views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
     far_views = ("0,0,1.1", "-34,3,1.1")  # of a head that turns

@@ -1,6 +1,6 @@
 """Draw the figure of docs/drive_a_fine_mesh.md: `python docs/figures/embedding.py [FOLDER]`.
 
-embedding         a fine sheet with ripples, carried by a coarse one: flatly, on the smooth surface
+embedding         a rippled sheet moved by a coarse sheet's flat triangles, and by its surface
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from risorius.bench.embedding import Faces, FlatBinding, Points, sheet
 
 
 def folded(points: Points) -> Points:
-    """Two folds of a cloth with its thickness along z."""
+    """Bend a sheet into two folds; z is the height above the sheet."""
     along = 3.2 * points[:, 0] + points[:, 1]
     middle = np.column_stack([points[:, :2], 0.3 * np.sin(along)])
     slope = 0.3 * np.cos(along)
@@ -25,7 +25,7 @@ def folded(points: Points) -> Points:
 
 
 def embedding() -> Image:
-    """The coarse sheet, the fine one carried in two ways, and the truth."""
+    """The coarse sheet, the fine sheet moved in two ways, and the true fine sheet."""
     rest, faces = sheet(8)
     flat, fine_faces = sheet(160)
     fine = flat + np.array([0.0, 0.0, 0.012]) * np.sin(45.0 * flat[:, [0]] + 20.0 * flat[:, [1]])

@@ -1,4 +1,4 @@
-"""Functions for the programs that draw the documentation's figures: options and drawing.
+"""Options and drawing functions for the programs that draw the documentation's figures.
 
 `python docs/figures/figures.py FILE.png ...` copies pictures of `risorius capture`, `risorius
 reproduce` and programs on pages into docs/pictures.
@@ -35,7 +35,7 @@ def shoot(
     options: CaptureOptions,
     target: npt.ArrayLike | None = None,
 ) -> Image:
-    """Hold a pose until it is at rest, and draw it. target: that of the camera [mm]."""
+    """Hold a pose until it is at rest, and draw it. target: the camera's target [mm]."""
     scene.reset()
     scene.pose(pose)
     settling_time = 1.5  # [s] after which a pose stands still
@@ -49,7 +49,7 @@ def shoot(
 def sheet(cells: Sequence[tuple[str, Image]], columns: int) -> Image:
     """Named pictures of one size, each with its name below it."""
     sheet = contact_sheet(cells, columns=columns, cell_width=cells[0][1].shape[1])
-    return sheet // 2 * 2  # without the last bit, which is noise: a quarter of the bytes
+    return sheet // 2 * 2  # The last bit is noise; without it, files have a quarter of the size.
 
 
 def webp(image: Image) -> bytes:
@@ -67,7 +67,7 @@ def webp(image: Image) -> bytes:
 
 
 def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
-    """Draw each figure into NAME.webp in the folder, which is checked before."""
+    """Check the folder, then draw each figure into its file NAME.webp."""
     for name in figures:
         check_file(folder / f"{name}.webp")
     for name, figure in figures.items():

@@ -65,7 +65,7 @@ def wrinkles() -> Image:
     scene = FaceScene()
     cells = []
     cell_size = (270, 250)  # [pixels] of one picture of wrinkles
-    # Pose, camera, its target [mm].
+    # Pose, camera, and the camera's target [mm].
     rows = (
         ("surprise", "-22,2,2.1", (0.0, 20.0, 80.0)),
         ("anger", "-12,2,3.0", (0.0, 12.0, 90.0)),
@@ -84,7 +84,7 @@ def wrinkles() -> Image:
 def persons() -> Image:
     """Other persons than the built-in head, at rest and in some expression and light."""
     cells = []
-    # Persons; and some more, with pose, light and camera.
+    # Persons at rest; then persons with pose, light and camera.
     at_ease = ("ada", "kofi", "maria", 19, 40, 43, 47, 10)
     front = ((seed, "", "studio", "0,0,0.9") for seed in at_ease)
     in_light = (

@@ -2,7 +2,7 @@
 
 one_topology      the same triangles in two frames of a clip, four of their vertices numbered
 
-Triangles through Pillow, from behind to the front, drawn three times too large and scaled down.
+Pillow draws the triangles from back to front, at three times the size; then the picture is reduced.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CAPTION = 24  # pixels below the panels
 
 
 def shaded(colour: Colour, light: float) -> Colour:
-    """A colour in the light of a surface that looks toward it by this much, 0 to 1."""
+    """A colour shaded by the cosine between normal and light, 0 to 1."""
     red, green, blue = (round(part * (0.55 + 0.45 * light)) for part in colour)
     return red, green, blue
 
@@ -36,7 +36,7 @@ def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left
     width, height = PANEL
     centre = np.array([left + width / 2.0, CAPTION + height / 2.0])
     pixels = 2.45  # pixels per millimetre
-    middle = (0.0, -22.0)  # of the face [mm], in the middle of a panel
+    middle = (0.0, -22.0)  # point of the face [mm] in the middle of a panel
     places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     a, b, c = corners.swapaxes(0, 1)
@@ -63,7 +63,7 @@ def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left
 
 
 def one_topology() -> Image:
-    """A face in two expressions, with the splits that both need together."""
+    """A face in two expressions, with the splits that either expression needs."""
     head = assets.load("head")
     simulation = sim.create(head)
     expressions = ("joy", "surprise")

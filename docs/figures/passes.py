@@ -29,7 +29,7 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
     with Capture(scene, CaptureOptions(size=size, camera="front")) as studio:
         turn = (-24.0, 4.0)  # [degrees] of the camera
         studio.camera.orbit(*turn)
-        margin = 0.04  # share of the picture, free on each side
+        margin = 0.04  # empty border on each side, as a share of the picture
         studio.camera.fit(scene.framing.extent, margin)
         pose = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
         scene.pose(pose)
@@ -78,7 +78,7 @@ def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.N
 
 
 def _scattered(faces: npt.NDArray[Any]) -> dict[int, Any]:
-    """A colour for each triangle, different from its neighbours'."""
+    """A random colour for each triangle."""
     return dict(enumerate(np.random.default_rng(2).integers(50, 235, (len(faces), 3))))
 
 
@@ -100,7 +100,7 @@ def _directions(normal: npt.NDArray[Any], on: Flags) -> npt.NDArray[Any]:
 
 
 def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
-    """A picture with its landmarks, hidden ones red."""
+    """A picture with its landmarks; hidden landmarks are red."""
     page = PIL.Image.fromarray(picture)
     draw = ImageDraw.Draw(page)
     landmarks = labels["landmarks"]
@@ -131,7 +131,7 @@ def dataset() -> Image:
 
 
 def _labelled(shot: Shot) -> Image:
-    """A picture with the borders of its classes, and its landmarks: hidden ones red."""
+    """A picture with the borders of its classes, and its landmarks; hidden landmarks are red."""
     classes = shot.known.images["segmentation"]
     is_edge = np.zeros(classes.shape, bool)
     is_edge[1:] |= classes[1:] != classes[:-1]

@@ -3,7 +3,7 @@
 refine_cases      the 27 split configurations and their triangulations
 refine_lookup     numbering of points, and one triangle looked up
 
-Line drawings through Pillow, drawn three times too large and scaled down.
+Pillow draws the lines at three times the size; then the picture is reduced.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def cases() -> Image:
 
 
 def lookup() -> Image:
-    """The numbers of the 12 points, and the way from splits to subtriangles."""
+    """The numbers of the 12 points, and the table look-up from splits to subtriangles."""
     diagram = Diagram(760, 250)
     corners = equilateral((140, 125), 200)
     points = points_in(corners)

@@ -24,7 +24,7 @@ from risorius.assets.fitting.guess import FIRST
 
 
 def wait_until_settled(viewer: Viewer) -> None:
-    """Let the face come to rest, and the picture be drawn in full."""
+    """Draw frames until the face is at rest and the picture has full detail."""
     most_frames = 400
     for frame in range(most_frames):
         if frame > 8 and viewer.schedule.is_idle:
@@ -102,7 +102,7 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window at a stop of the tour."""
     size = (1160, 700)
     with Viewer(script_for(None, "face"), size) as viewer:
-        viewer.settings.is_alive = False  # the same picture every time
+        viewer.settings.is_alive = False  # The picture is the same in every run.
         # The mouse points at nothing, so no hint appears.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         wait_until_settled(viewer)

@@ -35,7 +35,7 @@ BLENDERS = {
     "5.0": Blender("3.11", "numpy==1.26.4", "5.0.0", "5.1.0"),
     "5.2": Blender("3.13", "numpy==2.3.*", "5.2.0", "5.3.0"),
 }
-WHEELS_FOR = {  # Blender's name of a platform -> tags of its wheels
+WHEELS_FOR = {  # Blender's name of a platform -> wheel tags of this platform
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
     "macos-arm64": ("macosx_12_0_arm64", "macosx_11_0_arm64"),

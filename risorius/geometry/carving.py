@@ -13,13 +13,14 @@ def carve(
     heights: Floats32,
     furrows: Floats32,
 ) -> None:
-    """Lower heights along lines, and write the depths of the furrows.
+    """Lower a height map along furrows, and write the depths of the furrows.
 
-    texels: where each lies across lines, at which sample along them, the length of one unit
-    across [mm], and how far lines show there, 0 to 1, shape (h, w, 4). courses, depths: where lines
-    run at their samples, as texels lie, and how deep they are [mm], shape (n, s). forms: of each
-    line the half width of its furrow and of the broad trough around it [mm], and the depth of that
-    trough beside the furrow's, shape (n, 3). heights, furrows: [mm], shape (h, w); written.
+    texels: for each texel its coordinate across the lines, its coordinate along them [samples], the
+    length of one unit across [mm], and the visibility of lines, 0 to 1; shape (h, w, 4). courses,
+    depths: coordinate across and depth [mm] of each line at its samples, shape (n, s). forms: for
+    each line the half width of its furrow [mm], the half width of the broad trough around it [mm],
+    and the trough's depth as a share of the furrow's, shape (n, 3). heights, furrows: [mm], shape
+    (h, w); written.
     """
     for row in range(texels.shape[0]):
         for column in range(texels.shape[1]):

@@ -1,8 +1,8 @@
 """Exact closest points on a triangle mesh, optionally only where it faces the same way.
 
-Triangles are sorted along a space-filling curve and put into boxes in pairs, pairs of pairs and so
-on. A search enters the nearer box first, and skips boxes farther than the nearest triangle so far.
-The depth of boxes is the same everywhere, even where triangles cluster.
+Triangles are sorted along a space-filling curve and grouped into a binary tree of boxes. A search
+enters the nearer box first, and skips boxes that are farther than the nearest triangle so far. The
+tree has the same depth everywhere, even where triangles cluster.
 
 Source: Morton 1966 for the curve; Ericson 2005, "Real-time collision detection", section 5.1.5, for
 one triangle.
@@ -89,7 +89,7 @@ def closest_points(
     normals: npt.NDArray[np.floating] | None = None,
     wrong_side: float = 0.0,
 ) -> SurfacePoints:
-    """Find the closest place on a mesh, at least one of `faces` (F, 3), for `points`, shape (n, 3).
+    """Find the closest place on a mesh of at least one triangle, for `points` (n, 3).
 
     `normals`: direction in which the surface should face there, shape (n, 3), zero for any
     direction. For a triangle that faces the other way, `wrong_side` is added to the distance, so

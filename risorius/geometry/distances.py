@@ -1,4 +1,4 @@
-"""Distances of all points of one set from all of another."""
+"""Distances between all points of one set and all points of another."""
 
 import numpy as np
 

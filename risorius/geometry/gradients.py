@@ -8,14 +8,14 @@ from .arrays import Floats32, Floats64, Integers32
 
 
 class TextureGradients:
-    """Gradients of u and v at texture coordinates: area-weighted means over the triangles around.
+    """Gradients of u and v at texture coordinates: area-weighted means over adjacent triangles.
 
     gradients = TextureGradients(faces, uv, face_uv)
     along_u_and_v = gradients.measure(positions)
     """
 
     def __init__(self, faces: Integers32, uv: Floats32, face_uv: Integers32) -> None:
-        """Learn triangles (F, 3), texture coordinates (U, 2) and those of corners (F, 3)."""
+        """Bind triangles (F, 3), and texture coordinates (U, 2) with numbers at corners (F, 3)."""
         self._faces = np.ascontiguousarray(faces)
         self._face_uv = np.ascontiguousarray(face_uv)
         self._corners = uv.astype(np.float64)[face_uv]
@@ -24,7 +24,7 @@ class TextureGradients:
     def measure(self, positions: Floats64) -> Floats32:
         """Gradient of u, then of v [1/unit of positions], shape (U, 6); 0 at flat triangles.
 
-        positions: those of vertices, shape (V, 3).
+        positions: of the vertices, shape (V, 3).
         """
         self._sums[:] = 0.0
         _add_gradients(positions, self._faces, self._face_uv, self._corners, self._sums)
@@ -41,7 +41,7 @@ def _add_gradients(
     corners: Floats64,
     sums: npt.NDArray[np.float64],
 ) -> None:
-    """Add each triangle's gradients times twice its area, and this area, to its corners' sums.
+    """Add each triangle's gradients, times twice its area, and this area to its corners' sums.
 
     Vectors are tuples here: arrays of three numbers would be allocated for each triangle.
     """

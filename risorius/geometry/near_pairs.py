@@ -1,7 +1,7 @@
 """Pairs of triangles near each other.
 
 Source: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D Graphics: boxes
-are sorted along one axis, and compared with those that begin before they end.
+are sorted along one axis, and each box is compared with the boxes that begin before it ends.
 """
 
 import numpy as np

@@ -14,7 +14,7 @@ def arc_lengths(points: Floats64) -> Floats64:
 def evenly_spaced(points: Floats64, along: Floats64, count: int) -> Floats64:
     """Return evenly spaced points on a polyline (n, k) from start to end, shape (count, k).
 
-    `along`: the parameter of each of its points, ascending, shape (n,).
+    `along`: the parameter of each point of the polyline, ascending, shape (n,).
     """
     places = np.linspace(0.0, along[-1], count)
     return np.stack([np.interp(places, along, column) for column in points.T], axis=1)

@@ -18,9 +18,10 @@ PARALLEL = 1e-12  # below this a triangle counts as parallel to the line
 def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
     """For each line `origin + t direction` and its triangle: volume, weights u and v, and t.
 
-    origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times that of direction and
-    triangle, above 0 if the line comes from outside; the other results are 0 below PARALLEL. The
-    triangle is met if u, v and 1 - u - v are not negative. Returns four arrays (n,).
+    origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times the volume of the
+    tetrahedron of direction and triangle, above 0 if the line comes from outside; if its size is
+    below PARALLEL, the other results are 0. The triangle is met if u, v and 1 - u - v are not
+    negative. Returns four arrays (n,).
     """
     a = corners[:, 0]
     ab = corners[:, 1] - corners[:, 0]
@@ -40,7 +41,7 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
 def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
     """Flag pairs of triangles that intersect and have no common vertex, shape (k,).
 
-    corners: shape (F, 3, 3). faces: numbers of their vertices, shape (F, 3). pairs: shape (k, 2).
+    corners: shape (F, 3, 3). faces: vertex numbers, shape (F, 3). pairs: shape (k, 2).
     """
     cuts = np.zeros(len(pairs), np.bool_)
     for number in range(len(pairs)):
@@ -113,7 +114,7 @@ def exits(
     """
     normals = cross_products(vertices, faces)
     corners = vertices[faces] - origin
-    is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # its inner side
+    is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # the triangle's inner side
     normals = normals[is_seen]
     corners = corners[is_seen]
     ways = unit_vectors(corners, PARALLEL)
@@ -145,7 +146,7 @@ def _meetings(
     met: Integers64,
     distances: Floats64,
 ) -> int:
-    """Count meetings of rays from the origin with triangles, as `crossings` finds them.
+    """Count intersections of rays from the origin with triangles, as `crossings` finds them.
 
     middle, cone: for each triangle the axis of its cone (F, 3), and the cosine of its half angle.
     met, distances: filled up to their size with ray and triangle (k, 2), and distance (k,).

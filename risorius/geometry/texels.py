@@ -28,11 +28,12 @@ class Texels:
 
     @classmethod
     def within(cls, corners: Floats64, size: tuple[int, int], margin: float = 0.0) -> Texels:
-        """The texels in triangles with `corners` (F, 3, 2), or within a margin [texels] of them.
+        """Find the texels in triangles, or within a margin [texels] of triangles.
 
-        corners: texture coordinates, from the left and from below, 0..1. size: height and width.
-        Texels deepest in their triangles come last, so that they are drawn over margins. Raises
-        ValueError if triangles cover the picture many times over.
+        corners: texture coordinates (F, 3, 2), from the left and from below, 0..1. size: height and
+        width. The result is sorted by depth inside the triangle, deepest last, so that texels
+        inside triangles are drawn over margins. Raises ValueError if triangles cover the picture
+        many times over.
         """
         height, width = size
         places = corners * [width, -height] + [-0.5, height - 0.5]
@@ -40,7 +41,7 @@ class Texels:
         high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
         sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
-        most_tries = 60_000_000  # a normal layout needs two entries for each texel
+        most_tries = 60_000_000  # a usual layout needs at most two entries for each texel
         if sides.prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
@@ -78,7 +79,7 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 def _walk(
     places: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
-    """Write row, column and triangle of texels, and weights, while there is room; count all."""
+    """Count all entries, and write row, column, triangle and weights of those that fit."""
     count = 0
     for t in range(places.shape[0]):
         a, b, c = places[t]
@@ -88,7 +89,7 @@ def _walk(
         area = ab[0] * ac[1] - ab[1] * ac[0]
         if abs(area) < 1e-9:
             continue
-        # Loss of a corner's weight within a margin beyond the opposite side.
+        # Least weight of a corner, at the outer border of the margin beyond the opposite side.
         slack_a = margin * np.hypot(bc[0], bc[1]) / abs(area) + 1e-9
         slack_b = margin * np.hypot(ac[0], ac[1]) / abs(area) + 1e-9
         slack_c = margin * np.hypot(ab[0], ab[1]) / abs(area) + 1e-9

@@ -15,7 +15,7 @@ from .arrays import Floats32, Unsigned8
 
 
 class Absorbed(NamedTuple):
-    """Pigments that take light from skin: of each an amount by channel, (3,), and a map, (H, W)."""
+    """Pigments of skin: for each the light absorbed by channel, (3,), and a map, (H, W)."""
 
     amounts: tuple[Floats32, Floats32, Floats32, Floats32]
     maps: tuple[Floats32, Floats32, Floats32, Floats32]
@@ -24,27 +24,27 @@ class Absorbed(NamedTuple):
 
 
 class Hairs(NamedTuple):
-    """The hair of a person: its light, and its share of each texel."""
+    """A person's painted hair: its colour, and its share of each texel."""
 
     light: Floats32  # (3,), linear
     grey: Floats32  # shares of grey on the scalp, and elsewhere, (2,)
     grey_light: Floats32  # (3,), linear
-    kept: Floats32  # share of hair's colour on each texel, (H, W)
+    kept: Floats32  # share of the hair's colour in each texel, (H, W)
     scalp: Floats32  # above 0.01 on the scalp, (H, W)
 
 
 class Grown(NamedTuple):
-    """Hair that is painted under hair that stands on it; arrays of height 0 if there is none."""
+    """Paint under modelled hair; arrays of height 0 if there is no modelled hair."""
 
-    covered: Floats32  # share that it covers, without single hairs, (H, W)
-    hairs: Floats32  # how much single hairs add, (H, W)
-    most: np.float32  # share that dense hair covers
-    root_light: np.float32  # share of light between hairs where they are dense
+    covered: Floats32  # covered share of each texel, without single hairs, (H, W)
+    hairs: Floats32  # strength of single hairs, (H, W)
+    most: np.float32  # largest covered share, in dense hair
+    root_light: np.float32  # share of light at the roots of dense hair
 
 
 @njit
 def absorb(absorbed: Absorbed, first: int, exponents: Floats32) -> None:
-    """Write exponents of e for the share of light that skin keeps, (3, rows, W).
+    """Write natural logarithms of the share of light that skin reflects, (3, rows, W).
 
     first: the row of the maps that is the first row of `exponents`.
     """
@@ -74,11 +74,11 @@ def compose(
     table: Unsigned8,
     picture: Unsigned8,
 ) -> None:
-    """Write rows from `first` on of a picture, (H, W, 3).
+    """Write rows of a picture (H, W, 3), from row `first` on.
 
-    left: share of light that skin keeps, (3, rows, W). light: from skin, linear, (3, H, W). skin:
-    light of bare skin where hair was before, (3,); former: share of that hair, (H, W). table: bytes
-    for squares of steps from 0 to 1.
+    left: share of light that skin reflects, (3, rows, W). light: of skin without pigments, linear,
+    (3, H, W). skin: light of bare skin, which replaces removed hair, (3,); former: share of the
+    removed hair, (H, W). table: the byte for each step of the square root of light.
     """
     width = left.shape[2]
     haired = np.empty(width, np.float32)
@@ -117,7 +117,7 @@ def _hair_of_row(
     covered: Floats32,
     shaded: Floats32,
 ) -> None:
-    """Write hair of the texels of a row, its grey, what grows over it, and the light there."""
+    """Write for a row of texels: shares of hair, grey and modelled hair, and the light."""
     one = np.float32(1.0)
     kept, scalp = hairs.kept[row], hairs.scalp[row]
     for x in range(len(haired)):

@@ -36,7 +36,7 @@ def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    """Values at points of a mesh that change with its frames, by name: heat, colours, strain.
+    """Point attributes of a mesh that may change in every frame, by name: heat, colours, strain.
 
     Blender's internal values and positions are left out.
     """
@@ -49,11 +49,11 @@ def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
 
 
 class Bound:
-    """The refiner of one copy, and the data that it copies from its source besides the shape."""
+    """The refiner of one copy, and the data besides positions that it copies from the source."""
 
     def __init__(self, settings: "RisoriusSettings") -> None:
-        """Learn the mesh at rest; the first time on a machine, code is compiled for seconds."""
-        from risorius import refine  # at its first use, so that Blender starts as fast as before
+        """Bind to the mesh at rest; on a machine's first run, compilation takes seconds."""
+        from risorius import refine  # imported late, so that Blender's start stays fast
 
         rest = settings.rest
         rest.calc_loop_triangles()
@@ -62,7 +62,7 @@ class Bound:
         polygons = numbers(triangles, "polygon_index", 1, np.int32).ravel()
         self.materials = numbers(rest.polygons, "material_index", 1, np.int32).ravel()[polygons]
         self.counts = len(rest.vertices), len(rest.polygons)
-        self.corners = None  # corners of the copy's present triangles
+        self.corners = None  # corners of the copy's current triangles
         splits = rest.get(SPLITS)
         look = dict(LOOKS[settings.look])
         if splits is not None:
@@ -88,7 +88,7 @@ class Bound:
         self.stays = splits is not None
 
     def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
-        """Refine the evaluated `source` into `mesh`; raises ValueError for another source."""
+        """Refine the evaluated `source` into `mesh`; ValueError for another number of elements."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
         values = {
@@ -162,17 +162,18 @@ def forget(*_: Any) -> None:
 
 
 def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
-    """Bind again with other settings, and show the result."""
+    """Bind a refiner again after a change of settings, and show the result."""
     bounds.pop(settings.id_data.session_uid, None)
     if settings.source is not None:
         update(settings.id_data, context.evaluated_depsgraph_get())
 
 
 def source_changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
-    """Follow another source, which Blender then evaluates even while it is hidden."""
+    """Follow another source, and make Blender evaluate it even while it is hidden."""
     copy = settings.id_data
     copy.parent = settings.source
-    # A hidden mesh moves in renders only if a modifier needs it; this modifier transfers nothing.
+    # In renders Blender evaluates a hidden mesh only if a modifier uses it; this one copies no
+    # data.
     follow = copy.modifiers.get("Follow Source")
     follow = follow or copy.modifiers.new("Follow Source", "DATA_TRANSFER")
     follow.object = settings.source
@@ -220,7 +221,7 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
         return is_mesh and active.risorius.source is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add the copy at its source, which is hidden, and moves the copy."""
+        """Add the copy, parent it to its source, and hide the source."""
         source = context.active_object
         depsgraph = context.evaluated_depsgraph_get()
         rest = bpy.data.meshes.new_from_object(source.evaluated_get(depsgraph))
@@ -252,7 +253,7 @@ def refined_copy(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 class OfRefinedCopy:
-    """An operator of the active object, if that is a refined copy."""
+    """An operator for the active object; available if this object is a refined copy."""
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
