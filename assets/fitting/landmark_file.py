@@ -248,7 +248,7 @@ GROUPS = (
 def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
     """Groups that would fit better in another order; points and template: (68, 3) [mm].
 
-    In a closed mouth only paths along the skin tell the inner lips apart, see `check_lips`.
+    In a closed mouth only paths along the skin separate the inner lips, see `check_lips`.
     """
     return [group for group in GROUPS if _is_disordered(group, points, template)]
 
