@@ -111,21 +111,6 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
     return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
 
 
-def decimated(vertices: Floats64, faces: Faces, count: int) -> tuple[Floats64, Faces]:
-    """Return a simplified mesh of about `count` triangles; the edges of openings stay in place.
-
-    A manifold mesh stays manifold: if every attempt would pinch it, more triangles are left.
-    """
-    most_attempts = 8  # at one number of triangles
-    while count < len(faces):
-        for attempt in range(most_attempts):
-            points, triangles = collapsed(vertices, faces, count, attempt)
-            if len(triangles) and is_manifold(triangles):
-                return points, triangles
-        count *= 2
-    return vertices, faces
-
-
 def is_manifold(faces: Faces) -> bool:
     """Whether each edge has one face, or two faces that run along it in opposite directions."""
     sides = sides_of(faces)

@@ -24,7 +24,8 @@ from risorius.app.errors import UserError
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 from risorius.assets.model import FineMesh
-from risorius.assets.topology import decimated
+from risorius.assets.topology import collapsed, is_manifold
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import closest_points
 
 Points = npt.NDArray[np.float64]
@@ -176,3 +177,18 @@ def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[An
     if missing:
         raise UserError(f"{path}: has no array {missing[0]!r}; it has {sorted(arrays)}")
     return arrays
+
+
+def decimated(vertices: Floats64, faces: Integers32, count: int) -> tuple[Floats64, Integers32]:
+    """Return a simplified mesh of about `count` triangles; the edges of openings stay in place.
+
+    A manifold mesh stays manifold: if every attempt would pinch it, more triangles are left.
+    """
+    most_attempts = 8  # at one number of triangles
+    while count < len(faces):
+        for attempt in range(most_attempts):
+            points, triangles = collapsed(vertices, faces, count, attempt)
+            if len(triangles) and is_manifold(triangles):
+                return points, triangles
+        count *= 2
+    return vertices, faces

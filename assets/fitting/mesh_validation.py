@@ -183,13 +183,7 @@ def check_openings(skin: SkinPiece) -> None:
     """Raise AssetError if lips are welded or skin covers an eye; skin: in the face space [mm]."""
     middle_of_lips = (62, 66)  # inner landmarks, above and below
     over, under = skin.landmarks[list(middle_of_lips)]
-    from_above, from_below = path_lengths(
-        skin.vertices, skin.faces, skin.landmarks[list(middle_of_lips)]
-    )
-    corners_of_lips = (60, 64)
-    ends = skin.landmarks[list(corners_of_lips)]
-    across = from_above[under]
-    around = (from_above[ends] + from_below[ends]).min()
+    across, around = _across_and_around(skin, middle_of_lips, corners=(60, 64))
     if over == under or across < JOINED_SHARE * around:
         raise ShutMouthError(
             "the mouth is shut: skin joins landmarks "
@@ -222,18 +216,26 @@ def _is_slit(skin: SkinPiece, side: str) -> bool:
     """Whether the lids of an eye touch, and join only around its corners."""
     most_gap = 1.5  # [mm] between touching lids: their margins are rounded
     for above, below in LID_PAIRS[side]:
-        ends = skin.landmarks[list(EYE_CORNERS[side])]
         over, under = skin.landmarks[[above, below]]
         between = skin.vertices[over] - skin.vertices[under]
         if np.linalg.norm(between[1:]) > most_gap:  # a shut lid slides aside
             return False
-        from_above, from_below = path_lengths(
-            skin.vertices, skin.faces, skin.landmarks[[above, below]]
-        )
-        around = (from_above[ends] + from_below[ends]).min()
-        if from_above[under] < JOINED_SHARE * around:
+        across, around = _across_and_around(skin, (above, below), EYE_CORNERS[side])
+        if across < JOINED_SHARE * around:
             return False
     return True
+
+
+def _across_and_around(
+    skin: SkinPiece, pair: tuple[int, int], corners: tuple[int, int]
+) -> tuple[float, float]:
+    """Lengths [mm] of two paths along the skin between landmarks above and below an opening.
+
+    The first is the shortest path, the second the shortest path over a corner of the opening.
+    """
+    paths = path_lengths(skin.vertices, skin.faces, skin.landmarks[list(pair)])
+    ends = skin.landmarks[list(corners)]
+    return float(paths[0, skin.landmarks[pair[1]]]), float(paths[:, ends].sum(axis=0).min())
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,9 +16,9 @@ from risorius.geometry.sides import different_pairs, sides_of
 
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
-from ..topology import border_vertices, collapsed
+from ..topology import border_vertices, collapsed, is_manifold
 from .landmark_file import nearest_vertices
-from .mesh_validation import SkinPiece, check_manifold, pieces_of
+from .mesh_validation import SkinPiece, pieces_of
 
 MOST_SIMULATED = 20_000  # triangles; with more, motion looks the same and takes longer
 SIMPLIFIED = 15_000  # triangles of a simplified mesh
@@ -60,8 +59,7 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     most_attempts = 8  # at a result that is a manifold surface
     for attempt in range(most_attempts):
         vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
-        with contextlib.suppress(AssetError):
-            check_manifold(faces)
+        if is_manifold(faces):
             break
     else:
         raise AssetError(

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from risorius.assets.fitting import fit_head
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import decimated
+from risorius.bench.subjects import decimated
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off

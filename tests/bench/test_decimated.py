@@ -4,7 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius.assets.topology import boundary_loops, collapsed, decimated, grid_faces, is_manifold
+from risorius.assets.topology import boundary_loops, collapsed, grid_faces, is_manifold
+from risorius.bench.subjects import decimated
 from tests.assets import checks
 
 TUBE_ROWS = 60
