@@ -1,15 +1,16 @@
-"""The skin of the built-in head in any tone, from one number, in a tenth of a second.
+"""Recolour the skin of the built-in head for any skin tone, in a tenth of a second.
 
-The individual typology angle, ITA = arctan((L* - 50) / b*) [deg], measures a tone. By it skin is
-called very light (above 55), light (above 41), intermediate (above 28), tan (above 10), brown
-(above -30) or dark (Chardon, Cretois, Hourseau 1991, "Skin colour typology and suntanning
-pathways", Int. J. Cosmetic Science 13:191-208). Here it is the tone of the face's bare skin in the
-picture. Lips and cheeks follow, because only amounts of melanin and blood (pigments.py), and hair,
-change.
+One number gives the tone: the individual typology angle, ITA = arctan((L* - 50) / b*) [deg]. Skin
+is called very light (ITA above 55), light (above 41), intermediate (above 28), tan (above 10),
+brown (above -30) or dark. Source: Chardon, Cretois, Hourseau 1991, "Skin colour typology and
+suntanning pathways", Int. J. Cosmetic Science 13:191-208.
 
-For skin darker than the darkest painted complexion, the additional melanin absorbs more evenly:
-published clusters of facial skin have b* of 15 at L* of 27 and of 38, below the 19 at 52 ("Proposed
-shade guide for human facial skin", IADR 2009, abstract 120461).
+The angle is that of the face's bare skin in the texture. Recolouring changes the amounts of melanin
+and blood (pigments.py) and the hair, so lips and cheeks follow the skin.
+
+In skin darker than the darkest painted complexion, additional melanin absorbs all wavelengths more
+evenly: published clusters of facial skin have b* of 15 at L* of 27 and of 38, but b* of 19 at L* of
+52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 120461).
 """
 
 from __future__ import annotations
@@ -45,20 +46,20 @@ from .population import DARKEST, LIGHTEST
 from .relief import with_reliefs
 from .sternomastoid import sternomastoids_of
 
-GREY_HAIR = (0.54, 0.52, 0.49)
-LOCKS_LIGHTER = 1.2  # relative to painted hair, because no other hair shades them
-BEHIND = 30.0  # [mm] from the hairline back, in the map of the scalp
-IN_FRONT = 10.0
+GREY_HAIR = (0.54, 0.52, 0.49)  # sRGB
+LOCKS_LIGHTER = 1.2  # brightness relative to painted hair, which other hair shades
+BEHIND = 30.0  # [mm] behind the hairline per unit of the scalp's map
+IN_FRONT = 10.0  # [mm] in front of the hairline where the map is 0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
-LEVELS = 4096  # of the table from light to bytes
-BAND = 16  # rows of texels that are coloured together: caches hold them
+LEVELS = 4096  # entries of the table from light to bytes
+BAND = 16  # rows of texels that are coloured together, few enough for the processor's cache
 
 
 @dataclass(frozen=True)
 class _Tints:
-    """The maps that recolour the picture, from `data/head_tints.npz`."""
+    """The maps that recolour the texture, from `data/head_tints.npz`."""
 
-    light: Floats32  # the picture, linear, without hair (3, H, W)
+    light: Floats32  # linear albedo without hair (3, H, W)
     melanin: Floats32  # (H, W)
     blood: Floats32  # (H, W)
     hair: Floats32  # (H, W)
@@ -67,19 +68,19 @@ class _Tints:
     brow: Floats32  # (H, W)
     scalp: Floats32  # (H, W)
     lids: Floats32  # edges of the lids, where lashes root (H, W)
-    detail: Floats32  # relief in the picture's lightness, in powers of e (H, W)
-    skin: Floats64  # (5,)
-    melanins: Floats64  # amounts for the tones in `angles`
-    angles: Floats64  # ITA, rising
+    detail: Floats32  # fine relief: natural logarithm of lightness relative to the mean (H, W)
+    skin: Floats64  # linear light of bare skin (3), then weights of melanin and of blood (5,)
+    melanins: Floats64  # amounts of melanin for the tones in `angles` (n,)
+    angles: Floats64  # ITA [deg], rising (n,)
 
     def melanin_of(self, angle: float) -> float:
-        """The amount of melanin in a tone (ITA)."""
+        """Interpolate the amount of melanin for a tone; angle: ITA [deg]."""
         return float(np.interp(angle, self.angles, self.melanins))
 
 
 def typology_angle(light: npt.ArrayLike) -> Floats64:
-    """ITA [deg] of linear light 0..1, shape (..., 3), from L* and b* of CIE 1976."""
-    # CIE, of linear sRGB (D65).
+    """ITA [deg], (...), of linear sRGB light from 0 to 1, (..., 3), by L* and b* of CIE 1976."""
+    # Rows Y and Z of the matrix from linear sRGB (D65) to CIE XYZ.
     to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
     relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
     root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
@@ -96,15 +97,16 @@ def recoloured(
     fringe: float = 0.0,
     shrink: int = 1,
 ) -> Image:
-    """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
+    """Recolour the albedo of the built-in head for a skin tone: sRGB, (H, W, 3), uint8.
 
-    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError. blood: amount relative to most skin of
-    this tone; 0.7 is pale, 1.3 flushed. haired_as: ITA that decides the colour of hair standing on
-    the scalp, which is then painted in this colour; None: all hair is painted, from the built-in
-    hairline on. fringe: share of single hairs at the hairline, 0 to 1. shrink: factor of fewer
-    texels in each direction, a power of 2 up to 16.
+    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError.
+    blood: amount relative to most skin of this tone; 0.7 is pale, 1.3 flushed.
+    haired_as: ITA [deg] that decides the colour of hair. Hair begins at the hairline of `features`.
+        None: `angle` decides the colour, and hair begins at the built-in hairline.
+    fringe: strength of single hairs at the hairline, 0 to 1.
+    shrink: factor by which width and height are smaller, a power of 2 up to 16.
     """
-    # imports numba, which takes long
+    # This module imports numba, which takes long.
     from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
 
     if not DARKEST <= angle <= LIGHTEST:
@@ -112,14 +114,14 @@ def recoloured(
     tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = changes_of(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
-    grey_share = 0.12  # share of the scalp's greyness for lashes, which are in the segment of brows
+    grey_share = 0.12  # factor on greyness outside the scalp: brows turn grey less, lashes hardly
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     behind = None if haired_as is None else _behind(tints, features)
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
-    root_light = 0.5  # share between hairs where they are dense
+    root_light = 0.5  # fraction of light that reaches the skin between dense hairs
     lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
-    # In double precision it takes twice as long.
+    # Double precision would take twice as long.
     single = np.float32
     beard = features.beard * SHADOW
     absorbed = Absorbed(
@@ -143,14 +145,14 @@ def recoloured(
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:
-    """Linear light of a person's hair without grey, shape (3,); angle: ITA [deg]."""
+    """The linear sRGB colour of a person's hair without grey, (3,); angle: ITA [deg]."""
     hair = changes_of(_tints().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
 def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
-    """Share of hair's colour on each texel, with a person's brows and lids."""
+    """Opacity of painted hair, 0 to 1, (H, W), with a person's brows, lid lines and stubble."""
     kept = tints.hair
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
@@ -169,7 +171,7 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
 
 @lru_cache(maxsize=1)
 def _shrunk_stubble(size: int, shrink: int) -> Floats32:
-    """Stubble with `shrink` times fewer texels each way."""
+    """Stubble of `stubble(size)`, averaged over blocks of `shrink` x `shrink` texels."""
     return shrunk(stubble(size), shrink)
 
 
@@ -182,10 +184,11 @@ def coloured(
     features: Features = PLAIN,
     shrink: int = 1,
 ) -> Person:
-    """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of the person's cut.
+    """Give a person a skin tone, a colour of eyes, and hair in the person's cut.
 
-    The hair does not change in other tones (`in_tone`). irises: None leaves them unchanged. shrink:
-    as in `recoloured`, for small pictures; paintings on the skin have fewer texels, too.
+    angle: ITA [deg]. blood, shrink: as in `recoloured`; textures of wrinkles shrink, too.
+    irises: name of a colour; None leaves the eyes unchanged.
+    The function `in_tone` of the result changes the tone of the skin, and leaves the hair.
     """
     parts = person.parts
     if irises is not None:
@@ -205,7 +208,7 @@ def coloured(
         person,
         albedo=in_tone(angle),
         ambient_occlusion=_occlusion(shrink),
-        # Small pictures do not show slopes of necks, so all persons share one map.
+        # Small pictures do not show the relief of necks, so all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
         wrinkles=_own_wrinkles(person, shrink),
         parts=_with_hair(person, parts, angle, features, behind),
@@ -215,16 +218,16 @@ def coloured(
 
 
 def _own_shape(person: Person) -> FineShape:
-    """The fine shape of the built-in head, with larynx and sternomastoids of a person."""
+    """The fine shape of the built-in head, with a person's larynx and sternomastoids."""
     known = load("head").fine_shape
     size = len(known.slopes)
     return with_reliefs(known, [larynx_of(person, size), *sternomastoids_of(person, size)])
 
 
 def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
-    """Wrinkles with folds of lids and lines of a person; the smallest pictures show no lines."""
+    """A person's wrinkles, with lid folds and lines; the smallest pictures show no lines."""
     lines = person.identity.lines
-    finest = 2  # texels, each way, from which on lines are as wide as one
+    finest = 2  # largest `shrink` at which lines are at least one texel wide
     if lines is None or shrink > finest:
         wrinkles = replace(person.wrinkles, map=shared_map(shrink))
     else:
@@ -233,7 +236,7 @@ def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
 
 
 def _beside_light_skin(angle: float) -> Floats64:
-    """Light from skin of a tone (ITA [deg]), relative to light skin, at most 1, shape (3,)."""
+    """Light from skin of a tone, relative to light skin: (3,), at most 1; angle: ITA [deg]."""
     tints = _tints()
     light_skin = 41.0  # ITA from which skin is called light
     lost = np.zeros((2, 3))
@@ -244,7 +247,7 @@ def _beside_light_skin(angle: float) -> Floats64:
 
 
 def _haired_segments(features: Features, behind: Floats32) -> Image:
-    """Segments of texels, with the brows and the hairline of a person."""
+    """Segments of the built-in head's texels, (H, W), with a person's brows and hairline."""
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
@@ -255,12 +258,12 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
         blur = 2.0  # [texels]
         wide = round(5.0 * blur)
         rows = np.flatnonzero(hairs.any(axis=1))
-        near = slice(max(rows[0] - wide, 0), rows[-1] + wide)  # rows of texels about brows
+        near = slice(max(rows[0] - wide, 0), rows[-1] + wide)  # rows of texels around brows
         covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
         left = np.arange(found.shape[1]) > found.shape[1] / 2
         sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        # A texel is brow from a third of the darkness above and below it on. So a dense brow loses
-        # the free ends of its hairs, and a thin tail is kept to its end.
+        # A texel is brow if its cover is at least a third of the greatest cover in its column. So a
+        # dense brow loses the free ends of its hairs, and a thin tail is kept to its end.
         least_cover = np.maximum(0.1, covered.max(axis=0) / 3.0)
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
@@ -269,7 +272,7 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
 
 @lru_cache(maxsize=2)
 def _texels_of(*segments: Segment) -> Integers64:
-    """Numbers of the texels, row by row, that belong to segments of the built-in head."""
+    """Flat indices of the texels that belong to some segments of the built-in head, (n,)."""
     places = np.flatnonzero(np.isin(load("head").segments, segments))
     places.flags.writeable = False
     return places
@@ -278,7 +281,7 @@ def _texels_of(*segments: Segment) -> Integers64:
 def _with_hair(
     person: Person, parts: Sequence[Part], angle: float, features: Features, behind: Floats32
 ) -> tuple[Part, ...]:
-    """The parts of a person with the hair of its cut; angle: ITA [deg]."""
+    """Replace the hair among a person's parts by hair of the person's cut; angle: ITA [deg]."""
     others = tuple(part for part in parts if not part.name.startswith(HAIR))
     cut = CUTS[person.identity.cut]
     uv = person.uv.astype(np.float64)
@@ -292,20 +295,20 @@ def _with_hair(
 
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:
-    """Hair on the scalp of the built-in head, where the picture shows it cropped."""
+    """Make standing hair for the built-in head, whose texture shows cropped hair there."""
     behind = np.float32(0.01 * BEHIND) * read_arrays(head.beside("_tints.npz"))["scalp"] - IN_FRONT
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
     return hair_of(OWN_CUT, scalp, to_screen(LOCKS_LIGHTER * to_linear(np.array(OWN.hair))), 1.0)
 
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
-    """Distance of texels behind a person's hairline [mm]; halved if the top is bald."""
+    """Distances of texels behind a person's hairline [mm], (H, W); halved where the top is bald."""
     scalp = tints.scalp
     behind = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline
     on_scalp = scalp > 0.01
     hairy = np.flatnonzero(on_scalp.any(axis=1))
-    rows = slice(hairy[0], hairy[-1] + 1)  # half of all
+    rows = slice(hairy[0], hairy[-1] + 1)  # half of all rows
     moved = behind[rows] - line.shift(len(scalp), rows)
     moved /= np.float32(1.0 + line.crown)
     np.copyto(behind[rows], moved, where=on_scalp[rows])
@@ -314,6 +317,7 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
 
 @lru_cache(maxsize=1)
 def _tints() -> _Tints:
+    """Read the maps, scaled to the size of the texture."""
     from PIL import Image as Pictures
 
     head = load("head")
@@ -338,8 +342,8 @@ def _tints() -> _Tints:
     tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
     is_skin = (hair < 0.02).astype(np.float32)
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
-    detail_size = 9  # [texels]: finer changes of colour are relief
-    # Beside hair the mean is that of skin alone: skin between dark hairs is no raised relief.
+    detail_size = 9  # [texels]; finer changes of lightness count as relief
+    # Beside hair the mean counts skin alone, or skin between dark hairs would look raised.
     around, share = (
         scipy.ndimage.uniform_filter(each, detail_size) for each in (lightness, is_skin)
     )
@@ -358,7 +362,7 @@ def _tints() -> _Tints:
 
 @lru_cache(maxsize=1)
 def _shrunk_tints(shrink: int) -> _Tints:
-    """The maps with `shrink` times fewer texels each way."""
+    """The maps, averaged over blocks of `shrink` x `shrink` texels."""
     whole = _tints()
     names = [each.name for each in fields(whole)]
     maps: dict[str, Any] = {
@@ -372,7 +376,7 @@ def _shrunk_tints(shrink: int) -> _Tints:
 
 @lru_cache(maxsize=2)
 def _occlusion(shrink: int) -> Image:
-    """Share of light from all around at the texels of the built-in head, (H, W), uint8."""
+    """Ambient occlusion of the built-in head, shrunk: open texels have 255, (H, W), uint8."""
     light = load("head").ambient_occlusion
     found = np.rint(shrunk(light.astype(np.float32), shrink)).astype(np.uint8)
     found.flags.writeable = False
@@ -381,5 +385,5 @@ def _occlusion(shrink: int) -> Image:
 
 @lru_cache(maxsize=1)
 def _screen_bytes() -> Image:
-    """Bytes (sRGB) of the squares of LEVELS steps from 0 to 1."""
+    """The sRGB bytes of linear light t * t, for LEVELS equal steps of t from 0 to 1, (LEVELS,)."""
     return np.rint(255.0 * to_screen(np.linspace(0.0, 1.0, LEVELS) ** 2)).astype(np.uint8)

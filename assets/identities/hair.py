@@ -1,8 +1,8 @@
-"""Short hair that stands off the head: shells over the scalp (render/shaders/shells.glsl).
+"""Short hair, drawn as shells: copies of the scalp at rising heights (render/shaders/shells.glsl).
 
-One surface gives the renderer the place and density of hair, and the length and direction of each
-strand; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
-forward and down, one in front brushes it back, one at a temple sweeps it aside.
+One surface over the scalp moves with the skin. Its vertices give the renderer the density of hair,
+and the length and direction of strands. Strands run away from a whorl. A whorl at the crown combs
+hair forward and down, one in front brushes it back, and one at a temple sweeps it aside.
 After Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces".
 """
 
@@ -25,22 +25,23 @@ from ..smooth import Points, smooth_step
 from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
-SLEEK = 0.4
-FINE = 0.22  # factor along long strands, which change less than short ones
-MEAN = 0.6  # share of the strands' way at which the part's vertices lie
-LOOSE_LENGTH = 22.0
+SLEEK = 0.4  # specular strength of hair that is combed smooth
+FINE = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
+MEAN = 0.6  # fraction of a strand's length at which the part's vertices lie
+LOOSE_LENGTH = 22.0  # [mm] of the longest stray hairs
 
 
 @dataclass(frozen=True)
 class Cut:
     """The cut and the combing of hair; all numbers of `CUTS` are chosen by eye.
 
-    whorl: direction from the middle of the head to the origin of strands (x left, y up, z ahead).
-    sides, top: lengths of strands [mm], on both sides and behind, and on top of the head.
-    lift: the sine of the angle at which they stand off the head.
-    behind: distance behind the hairline where they have this length [mm].
-    knot: half the width of the knot or tail that they are tied to [mm]; 0: none.
-    tail: length of a hanging tail [mm]; 0: it is wound to a knot.
+    whorl: direction from the head's centre to the whorl (x left, y up, z forward).
+    sides: length of strands on the sides and the back of the head [mm].
+    top: length of strands on top of the head [mm].
+    lift: sine of the angle between strands and skin.
+    behind: distance behind the hairline at which strands reach their full length [mm].
+    knot: half the width of the knot or tail into which hair is tied [mm]; 0: hair is not tied.
+    tail: length of a hanging tail [mm]; 0: tied hair is wound into a knot.
     """
 
     whorl: tuple[float, float, float]
@@ -54,10 +55,10 @@ class Cut:
 
 @dataclass(frozen=True)
 class Fall:
-    """The fall of long hair beside the face; chosen by eye, all in [mm].
+    """The shape of long hair that hangs beside the face; chosen by eye.
 
-    parting: from the middle of the face to the parting, positive to the subject's left.
-    below: from the ears down to its end.
+    parting: distance of the parting from the face's midline [mm], positive to the subject's left.
+    below: distance from the ears down to the tips [mm].
     """
 
     parting: float
@@ -83,10 +84,11 @@ CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Hairline:
-    """The hairline, as distances behind the built-in head's [mm].
+    """A person's hairline, compared with the built-in head's.
 
-    front, temples: in the middle, and more at the corners of the forehead.
-    crown: how bald the top is, 0 to 1.
+    front: distance behind the built-in hairline at the midline [mm].
+    temples: further distance at the corners of the forehead [mm].
+    crown: baldness of the crown, 0 to 1.
     """
 
     front: float = 0.0
@@ -94,13 +96,13 @@ class Hairline:
     crown: float = 0.0
 
     def shift(self, size: int, rows: slice = slice(None)) -> Floats32:
-        """How far it lies behind the built-in head's [mm], these rows of (size, size)."""
+        """Distance behind the built-in hairline [mm], for `rows` of a (size, size) texture."""
         across = np.linspace(-0.5, 0.5, size)
         up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
-        bald_depth = 40.0  # [mm] to the hairline where the top is bald
+        bald_depth = 40.0  # [mm] that a wholly bald crown shifts the hairline
         beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
         top = np.exp(-(((up - 0.78) / 0.15) ** 2))
         ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
@@ -110,11 +112,12 @@ class Hairline:
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
-    """A random hairline for a sex and an age.
+    """Draw a random hairline for a sex and an age.
 
-    It is straight, round, or M-shaped with the frequencies among 456 persons (women 43, 39, 18 %,
-    men 46, 11, 43 %); men's lies 4.5 mm higher (Kashiyama and others 2021, "Hairline morphology",
-    Plast. Reconstr. Surg. Glob. Open 9:e3765). Its recession is chosen.
+    Straight, round and M-shaped hairlines are as frequent as among 456 persons: 43, 39 and 18 % of
+    women, 46, 11 and 43 % of men. The hairline of men lies 4.5 mm higher. Source: Kashiyama and
+    others 2021, "Hairline morphology", Plast. Reconstr. Surg. Glob. Open 9:e3765. How much the
+    hairline recedes with age is chosen by eye.
     """
     kind, _, share, bald = random.uniform(0.0, 1.0, 4)
     front = float(np.clip(random.normal(0.0, 3.0), -6.0, 6.0))
@@ -130,10 +133,14 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
 
 
 class Scalp(NamedTuple):
-    """Where hair grows: vertices (n, 3) [mm], unit normals, faces, and mm behind the hairline.
+    """The skin on which hair grows, as a triangle mesh.
 
-    covers: the least heights of hair above the vertices [mm], shape (n,), so that coarse triangles
-    of a hollow skin do not hide it.
+    points: vertices [mm], (n, 3).
+    normals: unit normals of the vertices, (n, 3).
+    faces: vertex numbers, (m, 3).
+    behind: distances of the vertices behind the hairline [mm], (n,).
+    covers: least heights of hair above the vertices [mm], (n,). At this height, coarse triangles
+        of concave skin do not hide the hair.
     """
 
     points: Points
@@ -144,14 +151,14 @@ class Scalp(NamedTuple):
 
 
 def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """The parts drawn as hair; colour: sRGB, shape (3,); length: factor on the cut's."""
+    """Make the parts of short hair, inner side first; colour: sRGB, (3,); length: factor on cut."""
     points, normals, faces, behind, covers = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit_vectors(np.array([cut.whorl]))[0]
     beside = unit_vectors(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
-    painted_depth = 1.0  # [mm] behind the hairline, where hairs are only painted
+    painted_depth = 1.0  # [mm] behind the hairline, up to which hairs are only painted
     is_hairy = (behind[faces] > painted_depth).any(axis=1)
     faces, rows, angle = _parted(faces[is_hairy], angle)
     points = points[rows]
@@ -164,27 +171,28 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     comb = unit_vectors(np.cross(np.cross(whorl, out), normals))
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
-    # [mm] behind the hairline, where hair lies flat, and where it stands as its cut says.
+    # Distances behind the hairline [mm]: up to the first hair lies flat, from the second it stands
+    # off by the cut's lift.
     flat_depths = 0.0, 45.0
     lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
-    whorl_radius = 30.0  # [mm] within which strands stand up, and do not shine
+    whorl_radius = 30.0  # [mm]; strands within it stand up and do not shine
     aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
     way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
     clearance = 0.5  # [mm] over the skin
-    sinking = 0.3  # [mm] down per mm, from 4 mm in front of the hairline on
+    sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
     uneven = 1.0 * np.sin(0.22 * radius * angle) + 0.8 * np.sin(0.57 * radius * angle + 1.0)
-    hem_depth = 20.0  # [mm] behind the hairline, up to dense hair
-    bare_depth = 5.0  # [mm] the same for hair that is drawn back
+    hem_depth = 20.0  # [mm] over which hair becomes dense
+    bare_depth = 5.0  # [mm] behind the hairline, where hair that is tied back begins
     dense = np.minimum(
         (behind - (bare_depth if cut.knot else painted_depth) + uneven) / hem_depth, 2.0
     )
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    # Tips of cropped hair point outward everywhere, so there is no ring of highlights around the
-    # whorl.
+    # Cropped hair shines little: its tips point outward everywhere, so no ring of highlights runs
+    # around the whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
         name=HAIR,
@@ -197,17 +205,19 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
         striation=striation.astype(np.float32),
     )
     loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
-    upward_share = 0.8  # of normals: the inside is only visible at the hem of a bald crown
+    # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
+    upward_share = 0.8
     hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
 def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
-    """Give faces (F, 3) their own vertices where angles (V,) wrap around.
+    """Double the vertices of faces across which the angle jumps from pi to -pi.
 
-    So strands do not cross from one side to the other. Returns the faces, and for each of their
-    vertices its former number and its angle.
+    Without this cut, strands would run across the whole head. faces: (F, 3). angle: angle of each
+    vertex around the whorl [rad], (V,). Returns the faces (F, 3), the former numbers of their
+    vertices (n,), and the angles of these vertices [rad], (n,).
     """
     crosses = np.ptp(angle[faces], axis=1) > np.pi
     doubled, number = np.unique(faces[crosses], return_inverse=True)
@@ -221,10 +231,13 @@ def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64,
 
 
 def from_within(hair: Part, faces: Integers32) -> Part:
-    """Some faces of hair as seen from the head: below hanging hair, and at tips."""
+    """Make the inner side of some faces (F, 3) of hair, which shows below hanging hair and at tips.
+
+    Its triangles are turned around, and its colours are darker.
+    """
     used, number = np.unique(faces[:, ::-1], return_inverse=True)
     rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
-    inner_light = 0.6  # share of light inside, where no lamp reaches
+    inner_light = 0.6  # fraction of light on the inner side, where no lamp reaches
     rows |= {
         "faces": number.reshape(-1, 3).astype(np.int32),
         "colours": inner_light * rows["colours"],
@@ -233,7 +246,7 @@ def from_within(hair: Part, faces: Integers32) -> Part:
 
 
 def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
-    """Single hairs, up to `longest` [mm], that stand off the smooth outline of a part."""
+    """Make stray hairs, up to `longest` [mm], that break the smooth outline of a part of hair."""
     assert hair.striation is not None
     random = np.random.default_rng(0)
     step_count = 5
@@ -246,12 +259,12 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
     root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
     normal = unit_vectors(normal)
     across = unit_vectors(np.cross(normal, way))
-    rise = (0.05, 0.4)  # least and most, as shares of the length
+    rise = (0.05, 0.4)  # least and greatest height above the surface, as fractions of the length
     off = random.uniform(*rise, (hair_count, 1))
-    stray = 0.2  # share of the length to the side
+    stray = 0.2  # standard deviation of the sideways offset, as a fraction of the length
     aside = random.normal(0.0, stray, (hair_count, 1))
     along = longest * (np.cross(across, normal) + off * normal + aside * across)
-    droop = 0.2  # share of the length downward
+    droop = 0.2  # fraction of the length that tips sink
     bent = longest * droop * (normal + np.array([0.0, 1.0, 0.0]))
     turn = np.radians([0.0, 120.0, 240.0])[:, None]
     ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
@@ -274,15 +287,16 @@ def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
 
 
 def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:
-    """The scalp of a head, finer than its mesh and round between its corners.
+    """Refine the triangles of a head that bear hair, and round them between their corners.
 
-    uv: those of vertices, shape (V, 2). behind: distances of texels behind the hairline [mm], (H,
-    W). Source: Boubekeur, Alexa 2008, "Phong tessellation".
+    vertices: [mm], (V, 3). faces: (F, 3). uv: texture coordinates of the vertices, (V, 2).
+    behind: distances of texels behind the hairline [mm], (H, W).
+    Source: Boubekeur, Alexa 2008, "Phong tessellation".
     """
     height, width = behind.shape
 
     def far(places: Points) -> Floats64:
-        """Distances of places on the texture behind the hairline [mm]."""
+        """Distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
         at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
@@ -291,8 +305,8 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     points = vertices[used]
     uv = uv[used]
     covers = np.zeros(len(points))
-    level_count = 2  # number of cuts of the scalp's triangles into four
-    bulge_share = 0.75  # of the way to the planes of an edge's ends
+    level_count = 2  # each level cuts every triangle into four
+    bulge_share = 0.75  # fraction of the distance to the tangent planes at an edge's ends
     for _ in range(level_count):
         cut = quarter(faces, len(points))
         faces = cut.faces
@@ -300,7 +314,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         middle = ends.mean(axis=1, keepdims=True)
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
         bulge = -bulge_share * (above * normals[cut.edges]).mean(axis=1)
-        # Where skin is hollow, its unrefined triangles lie above the refined ones.
+        # Where skin is concave, unrefined triangles lie above the refined ones.
         hollow = bulge_share * np.maximum(above, 0.0).mean(axis=(1, 2))
         covers = np.concatenate([covers, covers[cut.edges].mean(axis=1) + hollow])
         points = np.vstack([points, middle[:, 0] + bulge])

@@ -1,8 +1,8 @@
-"""Long hair: it hangs beside the face, or is tied behind the head.
+"""Long hair, which hangs beside the face or is tied behind the head.
 
-It is drawn like short hair (hair.py), in layers from the inside out over one surface of parallel
-strands. Hanging strands run over the head from a parting. Tied strands are a rope, which is wound
-to a knot, or hangs as a tail from the place where strands over the scalp meet.
+Long hair is drawn like short hair (hair.py): as layers over one surface of parallel strands, from
+the inside out. Hanging strands run over the head from a parting. Tied hair is wound into a knot,
+or hangs as a tail; either begins where the strands on the scalp meet.
 """
 
 from __future__ import annotations
@@ -22,70 +22,72 @@ from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
 
-EDGE, ROUNDED = np.radians([62.0, 50.0])  # angles from the face to hair, and to its full volume
-HEM = 5.0  # [mm] of thinning tips, of hair that is cut
-FULL = 2.0  # density where all layers are full; [mm] that hair stands off the head
-VOLUME = 9.0
-SLIDE = 1.3  # of layers along lying strands, for each millimetre outward
-DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # it hangs down, free of the back
-Even = Floats64 | float  # a number may stand for all
+# Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
+EDGE, ROUNDED = np.radians([62.0, 50.0])
+HEM = 5.0  # [mm] over which the tips of cut hair thin out
+FULL = 2.0  # density at which all layers are full
+VOLUME = 9.0  # [mm] that hair stands off the head
+SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
+DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # tails hang clear of the back
+Even = Floats64 | float  # a single number holds for every point
 
 
 def falling_hair(
     cut: Fall, scalp: Scalp, head: Any, colour: Floats64, length: float
 ) -> tuple[Part, ...]:
-    """The parts that are drawn as loose hair, the inner side first.
+    """Make the parts that are drawn as long loose hair, the inner side first.
 
-    head: with vertices and anatomy. colour: sRGB, shape (3,); length: factor on the cut's.
+    head: has vertices (V, 3) [mm] and anatomy (names -> vertex numbers). colour: sRGB, (3,).
+    length: factor on the distance from the ears to the tips.
     """
     vertices = head.vertices
     at = head.anatomy
     ear = 0.5 * (vertices[at["tragion_left"]] + vertices[at["tragion_right"]])
-    middle = np.array([0.0, ear[1] + 29.0, ear[2] - 8.0])  # middle of the head, from the ears [mm]
+    middle = np.array([0.0, ear[1] + 29.0, ear[2] - 8.0])  # centre of the head, above the ears [mm]
     strand_count = 51
-    around = np.linspace(-1.0, 1.0, strand_count)  # from the right of the face around the back
+    around = np.linspace(-1.0, 1.0, strand_count)  # from the face's right side around the back
     share = 1.0 - np.abs(around)
     side = np.sign(around)
     crown = vertices[at["vertex"]] + [0.4 * cut.parting, 0.0, -30.0] - middle
     front = vertices[at["trichion"]] + [cut.parting, 0.0, -4.0] - middle
     angle = EDGE + (np.pi - EDGE) * share**1.3
     level = np.stack([side * np.sin(angle), 0.0 * angle, np.cos(angle)], axis=-1)
-    sample_count = 14  # along each strand over the head, and the same number below
+    sample_count = 14  # along the part of a strand on the head; one fewer along the free part
     over = np.linspace(0.0, 1.0, sample_count)
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
     roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
-    level_of_widest = np.array([0.0, -0.1, 0.0])  # a little below it strands leave the head
+    level_of_widest = np.array([0.0, -0.1, 0.0])  # strands leave the head a little below its centre
     ways = _turned(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
-    # Beside the face the outer side curves to the inner one.
+    # Beside the face the outer surface of the hair curves inward to its inner surface.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)
     ragged_depth = 3.0  # [mm] of uneven tips
     layered_rise = 16.0  # [mm] that tips rise in front
     ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
-    rise = np.clip(over / 0.35, 0.0, 1.0)  # share of the way to the full volume
+    rise = np.clip(over / 0.35, 0.0, 1.0)  # 0 at the root, 1 where the volume is full
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
-    # [mm] off the skin: little at roots, to stop light; more over the forehead, which may bulge.
+    # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
     places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
-    lobe_depth = 42.0  # [mm] below the tragus: higher tips would meet the lobe
+    lobe_depth = 42.0  # [mm] below the tragus; strands that curve in above it would meet the lobe
     curved, thinned = _tips(height, ears_end=ear[1] - lobe_depth, ends=ends)
     fall = middle + (wide * curved - thinned * thick[:, -1:])[..., None] * level[:, None]
     fall[..., 1] = height
     thick = np.hstack([thick, thick[:, -1:] * (1.0 - thinned)])
     sharp = np.concatenate([places, fall], axis=1)
-    bending_steps = 1.3  # along strands: range over which they bend away from the head
+    bending_steps = 1.3  # standard deviation of the smoothing along strands, in samples
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
     bent[:, 0] = sharp[:, 0]  # roots stay
     along = _along(bent)
     off = 88.0 * (angle - EDGE)[:, None]
-    # Hair gets dense within 2 mm from the parting and 4 mm from the face: over longer ways, strands
-    # in front would be bars over the skin.
+    # Hair becomes dense within 2 mm of the parting and 4 mm of the face. Over longer distances, the
+    # strands in front would look like bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
@@ -93,49 +95,51 @@ def falling_hair(
 
 
 def _slide(along: Floats64) -> Floats64:
-    """Slide of layers in these places along strands [mm], as `_layers` takes it, (n, m).
+    """The argument `slide` of `_layers`, (n, m), for lengths along strands from roots [mm], (n, m).
 
-    Hair rises from its parting, and shines where it lies. Two lying halves, whose strands run
-    apart, would meet in a hard edge, one side bright and the other dark.
+    Hair rises at its parting, and shines where it lies flat. If it lay flat at the parting, the two
+    halves would meet there in a hard edge, one side bright and the other dark.
     """
     rising_length = 40.0  # [mm]
     return np.asarray(SLIDE * smooth_step(0.0, rising_length, along))
 
 
 def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
-    """Curve of strands to the face below the ears, and their loss of volume.
+    """Curve strands inward below the ears, and thin them toward their tips.
 
-    height: along strands [mm], (n, m). ends: that of each strand, (n,). Returns shares of the
-    radius and of the volume, (n, m).
+    height: height of each point [mm], (n, m). ears_end: height below which strands curve [mm].
+    ends: heights of the tips [mm], (n,). Returns factors on the distance from the head's axis, and
+    the fractions of the volume that are lost, both (n, m).
     """
-    tip_thinning = 0.7  # share of the volume missing at tips
-    tip_curving = 0.27  # share of the radius missing at tips
+    tip_thinning = 0.7  # fraction of the volume that is lost at tips
+    tip_curving = 0.27  # fraction of the distance from the axis that is lost at tips
     low = np.clip((ears_end - height) / np.maximum(ears_end - ends, 1.0)[:, None], 0.0, 1.0)
     return 1.0 - tip_curving * low**1.6, tip_thinning * low**2
 
 
 def _reach(ways: Floats64, solid: Floats64) -> Floats64:
-    """Distance of the skin in some directions [mm]: a soft maximum over its points nearby.
+    """Distances of the skin from the head's centre [mm], (n, m): a soft maximum over nearby points.
 
-    ways: (n, m, 3) unit. solid: (k, 3) points of the skin, from the middle of the head [mm].
+    ways: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm], (k, 3).
     """
     far = np.linalg.norm(solid, axis=1)
-    sharpness = 120.0  # of the mean over directions
+    sharpness = 120.0  # of the weights: higher counts fewer directions
     weights = ways.reshape(-1, 3) @ (solid / far[:, None]).T
     weights -= 1.0  # in place: there are a million
     weights *= sharpness
     np.exp(weights, out=weights)
-    power = 24.0  # of the mean over distances: high, so that the farthest counts most
+    power = 24.0  # of the power mean over distances: high, so that the farthest point counts most
     sums = weights @ np.column_stack([far**power, np.ones(len(far))])
     mean = (sums[:, 0] / sums[:, 1]).reshape(ways.shape[:2])
     return np.asarray(mean ** (1.0 / power))
 
 
 def _turned(start: Floats64, end: Floats64, shares: Floats64) -> Floats64:
-    """Unit vectors on great circles from some (n, 3) to others, at shares of the turn (m,).
+    """Interpolate between unit vectors along great circles (slerp).
 
-    No two of a pair are alike or opposite. Shape (n, m, 3). Source: Shoemake 1985, "Animating
-    rotation with quaternion curves".
+    start, end: pairs of unit vectors, (n, 3), neither equal nor opposite. shares: fractions of the
+    angle between them, (m,). Returns unit vectors, (n, m, 3).
+    Source: Shoemake 1985, "Animating rotation with quaternion curves".
     """
     angle = np.arccos((start * end).sum(axis=1))[:, None]
     parts = np.sin((1.0 - shares) * angle), np.sin(shares * angle)
@@ -144,7 +148,10 @@ def _turned(start: Floats64, end: Floats64, shares: Floats64) -> Floats64:
 
 
 def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """The parts that are drawn as tied hair, of a cut with a knot or a tail; see `falling_hair`."""
+    """Make the parts that are drawn as tied hair, of a cut with a knot or a tail.
+
+    colour: sRGB, (3,). length: factor on the lengths of the cut.
+    """
     points = scalp.points
     out = -unit_vectors(np.array([cut.whorl]))[0]
     ways = unit_vectors(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
@@ -153,31 +160,32 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     t = np.linspace(0.0, 1.0, place_count)[:, None]
     if cut.tail:
         far = length * cut.tail * t
-        root_depth = 12.0  # [mm] within the scalp, where a tail begins
-        free_distance = 75.0  # [mm] from there to its full width
+        root_depth = 12.0  # [mm] below the scalp, where a tail begins
+        free_distance = 75.0  # [mm] from the beginning of a tail to its full width
         bent = smooth_step(root_depth, free_distance, far)
-        tie_distance = 28.0  # [mm] from there to its tie
+        tie_distance = 28.0  # [mm] from the beginning of a tail to its tie
         free = smooth_step(tie_distance, free_distance, far)
         ways = unit_vectors((1.0 - bent) * out + bent * DOWN)
         line = root - root_depth * out + np.cumsum(ways * far[1], axis=0)
-        tied_width = 0.45  # share of its thickness
+        tied_width = 0.45  # thickness at the tie, as a fraction of the full thickness
         thick = tied_width + (1.0 - tied_width) * free
-        root_width = 1.0  # share of its thickness, on the scalp
+        root_width = 1.0  # thickness on the scalp, as a fraction of the full thickness
         thick += (root_width - tied_width) * (1.0 - smooth_step(0.0, tie_distance, far))
         thick *= np.sqrt(1.0 - 0.97 * t**4)
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
-        tail_hem = 28.0  # [mm] of thinning tips
+        tail_hem = 28.0  # [mm] over which tips thin out
         dense = np.minimum(far / root_depth, (far[-1] - far) / tail_hem)
-        # For a tail and a knot: number of locks, their width [mm], depth between them, their turns.
+        # Number of locks, width of a lock [mm], depth of the grooves between locks as a fraction
+        # of the radius, and turns of the locks around the axis.
         tail = (6, 24.0, 0.04, 0.1)
         locks, wide, deep, turns = tail
-    else:  # as a ball from its rim to its middle
+    else:  # a ball, sampled from its rim on the scalp to its outer pole
         rise = -1.0 + (0.498 * np.pi + 1.0) * t
         thick = np.cos(rise)
         ways = out[None]
         free = np.ones_like(t)
-        knot_height = 0.8  # share of a knot's width
-        dimple_depth = 0.12  # share of a knot's width
+        knot_height = 0.8  # fraction of half the knot's width
+        dimple_depth = 0.12  # fraction of half the knot's width
         height = knot_height * (np.sin(rise) + 0.5) - dimple_depth * np.exp(-((3.0 * thick) ** 2))
         line = root + cut.knot * height * out
         shade = smooth_step(-0.3, -1.0, rise)
@@ -190,7 +198,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
     ring = np.cos(turn) * unit_vectors(np.cross(RIGHT, ways)) + np.sin(turn) * RIGHT
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
-    lost_light = 0.5  # share of light lost below a knot and at a tail's tie
+    lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = locks * wide * place[..., 0] / (2.0 * np.pi)
     tied = _layers(HAIR + "_tied", places, across, VOLUME, dense[:, 0], light * colour)
@@ -206,21 +214,23 @@ def _layers(
     colour: Floats64,
     slide: Even = SLIDE,
 ) -> Part:
-    """Strands side by side, in layers.
+    """Make a part of n parallel strands with m points each, which is drawn in layers.
 
-    places: those of the outermost layer along each strand from its root [mm], shape (n, m, 3).
-    across, thick, dense: place of strands beside each other [mm], thickness of their volume [mm],
-    their density, (n, m). colour: sRGB, (n, m, 3). slide: along strands, for each millimetre
-    outward, (n, m).
+    places: points of the outermost layer, from root to tip [mm], (n, m, 3).
+    across: coordinate across the strands [mm], (n, m).
+    thick: thickness of all layers together [mm], (n, m).
+    dense: density, 0 to FULL, (n, m).
+    colour: sRGB, (n, m, 3).
+    slide: distance that layers move along strands for each millimetre outward, (n, m).
     """
     shape = places.shape
     points = places.reshape(-1, 3)
     number = np.arange(places.size // 3).reshape(shape[:2])
     out = unit_vectors(points - points.mean(axis=0))
-    outward_share = 0.01  # in normals: no triangles where strands meet
+    outward_share = 0.01  # keeps normals defined where strands meet and triangles have no area
     normals = unit_vectors(vertex_normals(points, grid_faces(number)) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
-    layer_share = 0.4  # of the volume
+    layer_share = 0.4  # fraction of the thickness between the first and the last layer
     along = short.FINE * _along(places)
     columns = across, along, layer_share * thick, np.minimum(dense, FULL), slide
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)
@@ -239,6 +249,6 @@ def _layers(
 
 
 def _along(places: Floats64) -> Floats64:
-    """Lengths along strands up to their places [mm], (n, m, 3) -> (n, m)."""
+    """Arc lengths of the points of strands from their roots [mm], (n, m, 3) -> (n, m)."""
     steps = np.linalg.norm(np.diff(places, axis=1, prepend=places[:, :1]), axis=2)
     return np.asarray(steps.cumsum(axis=1))

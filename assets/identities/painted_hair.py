@@ -1,6 +1,6 @@
-"""Paint hair on the scalp below standing hair, so that no skin shows through.
+"""Paint the scalp below hair in the colour of hair, so that no skin shows through.
 
-Near the hairline it thins out as single hairs.
+Near the hairline the paint thins out into single hairs.
 """
 
 from __future__ import annotations
@@ -14,32 +14,32 @@ from ...geometry.arrays import Floats32
 from ..smooth import shrunk
 from .hair import Cut, Fall
 
-MOST_COVER = np.float32(0.99)  # share that dense hair covers
+MOST_COVER = np.float32(0.99)  # opacity of dense hair
 
 
 def grown_over(behind: Floats32) -> Floats32:
-    """Share of texels that hair covers; behind: their distance behind the hairline [mm]."""
+    """Opacity of hair, 0 to 1, of the shape of `behind`: distances behind the hairline [mm]."""
     dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
     t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
     return np.asarray(MOST_COVER * t * t * (np.float32(3.0) - np.float32(2.0) * t), np.float32)
 
 
 def fringe_of(cut: Cut | Fall) -> float:
-    """Share of single hairs at the hairline; smaller where hair is not combed over it."""
+    """Strength of single hairs at the hairline, 0 to 1: full where a cut is combed down over it."""
     is_combed_down = isinstance(cut, Cut) and cut.whorl[2] < 0.0 and not cut.knot
     return 1.0 if is_combed_down else 0.25
 
 
 @lru_cache(maxsize=1)
 def shrunk_strands(size: int, shrink: int) -> Floats32:
-    """Strands of short hair with this many texels less each way."""
+    """The strands of `_strands(size)`, averaged over blocks of `shrink` x `shrink` texels."""
     return shrunk(_strands(size), shrink)
 
 
 def _strands(size: int) -> Floats32:
-    """How much more than hair about them single hairs at a hairline cover, shape (size, size).
+    """A random pattern of single hairs, (size, size), added to the opacity of hair at a hairline.
 
-    They run down the texture and lean to both sides; 0 in the mean, 2 at most.
+    The hairs run down the texture and lean to both sides. The mean is 0, the maximum at most 2.
     """
     random = np.random.default_rng(0).random((2, size, size), np.float32)
     rows = np.arange(size)[:, None]
