@@ -1,6 +1,6 @@
-"""Make persons: heads with another shape, skin, eyes and hair than the built-in head.
+"""Make persons: heads whose shape, skin, eyes and hair differ from those of the built-in head.
 
-    person = make_person(sample_identity(7))        # the shape of a number's person
+    person = make_person(sample_identity(7))        # the shape of person number 7
     person = coloured(person, angle=-20.0, irises="brown")
 
 A person can replace the built-in head everywhere: `sim.create(person)`, `FaceScene(person)`.

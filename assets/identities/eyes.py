@@ -1,9 +1,9 @@
-"""A person's eyes: individual irises; whites and rims that fit the skin.
+"""Colour a person's eyes: individual irises, and whites and rims that match the skin.
 
-Irises differ in crypts and furrows between their fibres (Sturm, Larsson 2009, "Genetics of human
-iris colour and patterns", Pigment Cell Melanoma Res. 22:544-562), and their dark edge fades with
-age (Peshek and others 2011, "Preliminary evidence that the limbal ring influences facial
-attractiveness", Evol. Psychology 9:137-146). All numbers are chosen by eye.
+Irises differ in the crypts and furrows between their fibres (Sturm, Larsson 2009, "Genetics of
+human iris colour and patterns", Pigment Cell Melanoma Res. 22:544-562). The dark edge of an iris,
+the limbal ring, fades with age (Peshek and others 2011, "Preliminary evidence that the limbal ring
+influences facial attractiveness", Evol. Psychology 9:137-146). All numbers are chosen by eye.
 """
 
 from __future__ import annotations
@@ -25,11 +25,14 @@ from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
 
 
 class Iris(NamedTuple):
-    """Differences of a person's irises from most irises of their colour.
+    """How a person's irises differ from the painted irises of the same colour.
 
-    lightness: in powers of 2. greyness: lost share of their colour. ring: how much browner they are
-    around the pupil, 0 to 1. limbus: how much darker their edge is than the painted one, in powers
-    of 2. fibres: contrast of light and dark fibres, in powers of 2. seed: seed of single fibres.
+    lightness: added lightness, in powers of 2.
+    greyness: fraction of the colour that is lost, 0 to 1.
+    ring: strength of a brown ring around the pupil, 0 to 1.
+    limbus: added darkness of the edge, in powers of 2.
+    fibres: contrast of light and dark fibres, in powers of 2.
+    seed: seed for the pattern of fibres.
     """
 
     lightness: float = 0.0
@@ -46,7 +49,10 @@ USUAL_IRIS = Iris()
 def drawn_iris(
     years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
 ) -> Iris:
-    """Random irises for an age and a tone [ITA]; chance: that of edge and fibres, 0 to 1."""
+    """Draw random irises for an age and a skin tone.
+
+    chance: random number, 0 to 1, that decides edge and fibres. angle: ITA [deg].
+    """
     lightness, greyness, ring = random.uniform(0.0, 1.0, 3)
     seed = int(chance * 2**31)
     darker, rougher = np.random.default_rng(seed).uniform(0.0, 1.0, 2).tolist()
@@ -65,7 +71,10 @@ def drawn_iris(
 def with_irises(
     parts: Sequence[Part], eyes: Sequence[Eye], name: str, iris: Iris
 ) -> tuple[Part, ...]:
-    """Parts with eyeballs in a colour of IRIS_SHARES; otherwise raises ValueError."""
+    """Replace the eyeballs among parts by eyeballs with irises of a colour.
+
+    name: a colour of IRIS_SHARES; any other raises ValueError.
+    """
     if name not in IRIS_SHARES:
         raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_SHARES)}")
     painted = read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0)
@@ -77,11 +86,11 @@ def with_irises(
 
 
 def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) -> tuple[Part, ...]:
-    """Parts, with whites and rims of the eyes that fit the skin.
+    """Darken the whites and the rims of eyes to match the skin.
 
-    darker: light of the skin relative to light skin, shape (3,), up to 1.
+    darker: light from the skin relative to light skin, at most 1, (3,).
     """
-    # As powers of the skin's light: flesh at the inner corner, wet edges of the lids, the white.
+    # Exponents of `darker` for the flesh at the inner corner, the wet edges of the lids, the white.
     shares = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
     white_share = np.array([0.15, 0.19, 0.25])
     if (darker == 1.0).all():
@@ -104,22 +113,22 @@ def _eyeball(parts: Sequence[Part], eye: Eye) -> Part:
 
 
 def _aside(part: Part, eye: Eye) -> Floats64:
-    """Distance of each vertex from the axis, in radii of the iris; infinite behind the middle."""
+    """Distance of each vertex from the eye's axis, in radii of the iris; infinite on the back."""
     off = part.vertices - eye.centre
     radius = np.linalg.norm(off[:, :2], axis=1) / eye.iris_radius
     return np.where(off[:, 2] > 0.0, radius, np.inf)
 
 
 def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
-    """The colours of an eyeball (n, 3), sRGB, with a person's irises."""
+    """Vary the iris of an eyeball: colours of its vertices, sRGB, (n, 3)."""
     light = to_linear(colours)
     aside = _aside(part, eye)
     grey = light @ np.array([0.2126, 0.7152, 0.0722])
     varied = light + iris.greyness * (grey[:, None] - light)
-    ring_radii = 0.45, 0.75  # of the iris: where the ring is whole, and where it ends
+    ring_radii = 0.45, 0.75  # in radii of the iris: the ring begins to fade, and ends
     ring = iris.ring * (1.0 - smooth_step(*ring_radii, aside))
     brown = np.array([1.25, 1.0, 0.65])
-    edge_radii = 0.78, 0.96  # of the iris: where its dark edge begins, and where it is darkest
+    edge_radii = 0.78, 0.96  # in radii of the iris: the dark edge begins, and is darkest
     lighter = iris.lightness - iris.limbus * smooth_step(*edge_radii, aside)
     lighter += iris.fibres * _fibres(part, eye, aside, iris.seed)
     varied *= 2.0 ** lighter[:, None] * (1.0 + ring[:, None] * (brown - 1.0))
@@ -128,22 +137,22 @@ def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
 
 
 def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:
-    """Lightness of an iris' fibres at each vertex, with a mean square of 1, shape (n,).
+    """Lightness of an iris' fibres at each vertex, with a mean square of 1, (n,).
 
-    Fibres are waves around the axis, which break up from the pupil to the edge. Both eyes of a
-    person are equally rough, with fibres in different places.
+    Fibres are waves around the axis, which twist apart from the pupil to the edge. Both eyes of a
+    person have equally rough irises, with different fibres.
     """
     random = np.random.default_rng([seed, int(eye.centre[0] > 0.0)])
     off = part.vertices - eye.centre
     around = np.arctan2(off[:, 1], off[:, 0])
     counts = np.array([3, 5, 8, 11, 14, 17])  # waves around the axis, which has 60 vertices
     begins = random.uniform(0.0, 2.0 * np.pi, len(counts))
-    twists = random.normal(0.0, 4.0, len(counts))  # [radians] on one radius of the iris
+    twists = random.normal(0.0, 4.0, len(counts))  # [rad] from the centre to the edge of the iris
     in_iris = np.minimum(aside, 1.0)[:, None]
     waves = np.cos(around[:, None] * counts + begins + twists * in_iris)
     return np.asarray(waves.sum(axis=1) / np.sqrt(0.5 * len(counts)))
 
 
 def _times(colours: Floats32, factor: Floats64) -> Floats32:
-    """Colours (sRGB) with their light multiplied by a factor."""
+    """Multiply the linear light of colours (sRGB) by a factor."""
     return np.asarray(to_screen(to_linear(colours) * factor), np.float32)

@@ -1,4 +1,4 @@
-"""Effects of sex, age and chance on the picture of a face: brows, lids, lips, hair, irises."""
+"""Draw features that a texture shows, by sex and age: brows, lids, lips, hair, irises."""
 
 from __future__ import annotations
 
@@ -15,14 +15,19 @@ from .space import Identity, Sex
 
 @dataclass(frozen=True)
 class Features:
-    """Effects of sex and age on the picture of a face; the default is the built-in head's.
+    """Features of a person's texture; the defaults are those of the built-in head.
 
-    brows: those of a person; None: the built-in head's. lid_line: how dark lashes make the edges of
-    the lids, 0 to 1. stubble: share of the skin that short hairs of a beard cover. beard, lips:
-    density of a beard's shadow, and of blood in the lips, relative to the built-in head. pale_lips:
-    share of the skin's additional melanin that lips lack. relief: strength of pores and patches,
-    relative to the built-in head. fair, grey: shares of such hair. hairline: the border of hair.
-    iris: differences of irises from most of their colour.
+    brows: None for the brows of the built-in head.
+    lid_line: darkness of the edges of the lids, where lashes root, 0 to 1.
+    stubble: fraction of the beard's area that stubble covers, 0 to 1.
+    beard: density of a beard's shadow, added to that of the built-in head.
+    lips: density of blood in the lips, added to that of the built-in head.
+    pale_lips: fraction of the skin's additional melanin that lips lack.
+    relief: strength of pores and patches, added to that of the built-in head.
+    fair: how fair the hair is, 0 to 1.
+    grey: how grey the hair is, 0 to 1.
+    hairline: shape of the hairline.
+    iris: how the irises differ from the painted irises of the same colour.
     """
 
     brows: Brows | None = None
@@ -42,19 +47,20 @@ PLAIN = Features()
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Random brows, beard, lips, hair and relief for an identity's sex and age, chosen by eye.
+    """Draw random features for an identity's sex and age and for a skin tone (ITA [deg]).
 
-    Women's eyes and lips are darker relative to their skin (Russell 2009, "A sex difference in
-    facial contrast and its exaggeration by cosmetics", Perception 38:1211-1219), less so with age
-    (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985). Lips of dark skin differ most, from its
-    own lightness to far lighter and pinker ones (Vergnaud and others 2024, "Lip color diversity",
-    Skin Res. Technol. 30:e13583); on light skin `pale_lips` changes nothing.
+    Women's eyes and lips are darker than their skin by a greater contrast than men's (Russell 2009,
+    "A sex difference in facial contrast and its exaggeration by cosmetics", Perception
+    38:1211-1219). The contrast falls with age (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985).
+    On dark skin lips vary most: some are as dark as the skin, others far lighter and pinker
+    (Vergnaud and others 2024, "Lip color diversity", Skin Res. Technol. 30:e13583). On light skin
+    `pale_lips` changes nothing. All numbers are chosen by eye.
     """
     is_man = identity.sex is Sex.MAN
     years = identity.age
     beard, fibres, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
-    fair_skin = 45.0  # ITA above which hair may be fair
-    shaved_density = 0.12  # density of a beard in the shipped picture
+    fair_skin = 45.0  # ITA [deg] above which hair may be fair
+    shaved_density = 0.12  # density of the beard in the texture of the built-in head
     brows = drawn_brows(is_man, years, random)
     hairline = drawn_hairline(is_man, years, random)
     iris = drawn_iris(years, fibres, random, angle=angle)
@@ -78,13 +84,15 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
 
 
 def _share_of_grey(years: float, angle: float, early: float) -> float:
-    """Share of grey in a person's hair; early: how soon it turns grey, 0 to 1.
+    """Fraction of grey in a person's hair, 0 to 0.95.
 
-    From 45 to 65 years it is 0.27 in the mean, and dark skin has it later (Panhard, Lozano,
-    Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
+    Between 45 and 65 years the mean is 0.27. Persons with dark skin turn grey later (Panhard,
+    Lozano, Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).
+
+    angle: ITA [deg]. early: 0 for hair that turns grey late to 1 for early.
     """
-    dark_skin = -30.0  # ITA below which hair turns grey later
-    delay = 10.0  # [years]
+    dark_skin = -30.0  # ITA [deg] below which the delay is full
+    delay = 10.0  # [years] by which hair turns grey later
     later = delay * float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - dark_skin), 0.0, 1.0))
     past = float(np.clip((years - 46.0 + 16.0 * early - later) / 34.0, 0.0, 1.0))
     return min(past * past, 0.95)

@@ -1,6 +1,6 @@
-"""The map of a person's furrows: its lines, and the folds beside its mouth.
+"""Draw the map of a person's furrows: expression lines, and the folds beside the mouth.
 
-Skin swells between two lines. Below the eyes, on nose, lips and chin all people have the furrows
+Skin swells between two lines. Below the eyes, on nose, lips and chin all persons have the furrows
 of the built-in head, whose map was drawn by eye.
 """
 
@@ -34,16 +34,16 @@ from .furrows import (
 from .lines import Lines
 from .relief import add_to
 
-FULL_DEPTH = 0.8  # [mm] of a furrow at which the map is darkest
-NOWHERE = 1e3  # [mm] of all coordinates, outside the face
-LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of slopes and depth of plain skin
-FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] in the left orbit, where crow's feet meet
+FULL_DEPTH = 0.8  # [mm]; depth of a furrow that the map stores as 255
+NOWHERE = 1e3  # [mm]; coordinates of texels outside the face
+LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of both slopes and the depth of flat skin
+FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] point in the left orbit where crow's feet would meet
 
 
 class _Region(NamedTuple):
-    """A part of the map, in which lines run one way.
+    """A rectangle of the map in which lines run in one direction.
 
-    texels: as of `carve`, across in [mm] or [rad], shape (h, w, 4).
+    texels: as `carve` takes them, (h, w, 4); the coordinate across the lines is in [mm] or [rad].
     """
 
     rows: slice
@@ -52,10 +52,10 @@ class _Region(NamedTuple):
 
 
 class _Fold(NamedTuple):
-    """Texels beside the mouth.
+    """The fold on one side of the mouth.
 
-    rows, columns: their places, shape (n,). relief: slopes and depth of the fold in bytes, which
-    fade toward the borders, shape (n, 3).
+    rows, columns: positions of its texels, (n,).
+    relief: slopes and depth [bytes], which fade toward the borders, (n, 3).
     """
 
     rows: Integers64
@@ -64,7 +64,7 @@ class _Fold(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """A map without a person's lines, shape (H, H, 4), and the regions of these lines."""
+    """The map without expression lines (H, H, 4), and the regions where lines are drawn."""
 
     plain: Image
     forehead: _Region
@@ -74,7 +74,7 @@ class _Places(NamedTuple):
 
 
 def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
-    """Wrinkles with the lines of a person; shrink: this many texels, each way, become one."""
+    """Draw the lines of a person into wrinkles; shrink: factor on width and height of the map."""
     places = _places(shrink)
     found = places.plain.copy()
     left, right = places.feet
@@ -100,9 +100,9 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
 
 
 def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
-    """Additions of lines to the slopes and depth of a region, shape (h, w, 3), in bytes.
+    """What lines add to the slopes and the depth of a region [bytes], (h, w, 3).
 
-    per_slope: 1 over the greatest slope [1/mm for one texel].
+    per_slope: reciprocal of the height between two texels that has the greatest slope [1/mm].
     """
     courses, depths = (
         np.array([getattr(line, name) for line in drawn], dtype=np.float32)
@@ -118,14 +118,14 @@ def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Float
 
 
 def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
-    """Place along a line as a number of samples, with a fraction between two samples."""
+    """Convert lengths along a line [mm] to fractional numbers of samples."""
     low, high = reach
     return (np.clip(along, low, high - 2.0 * STEP) - low) / STEP
 
 
 @lru_cache(maxsize=2)
 def shared_map(shrink: int) -> Image:
-    """The map of the built-in head's furrows; shrink: as in `with_lines`."""
+    """The built-in head's map of furrows, averaged over blocks of `shrink` x `shrink` texels."""
     known = load("head").wrinkles.map
     found = np.rint(shrunk(known.astype(np.float32), shrink)).astype(np.uint8)
     found.flags.writeable = False
@@ -134,7 +134,7 @@ def shared_map(shrink: int) -> Image:
 
 @lru_cache(maxsize=2)
 def _places(shrink: int) -> _Places:
-    """Where lines go; all lengths are chosen by eye, but for the brows'."""
+    """Find the regions of lines; all lengths are chosen by eye, except the brows' position."""
     head = load("head")
     plain = shared_map(shrink).copy()
     size = len(plain)
@@ -161,7 +161,7 @@ def _places(shrink: int) -> _Places:
     outside = beside - np.interp(-y, -ring[:, 1], ring[:, 0])
     fold = smooth_step(-9.0, -6.0, outside) * smooth_step(24.0, 18.0, outside)
     fold *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
-    # Lines of the built-in head are taken out; those of the lower lid, in the second slot, stay.
+    # Remove the lines of the built-in head, except those of the lower lid in the second slot.
     first = 1.0 - near[..., 3] / 255.0
     is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < NOWHERE)
     taken = is_above.astype(np.float64)
@@ -184,7 +184,7 @@ def _places(shrink: int) -> _Places:
 
 
 def _face(size: int) -> tuple[slice, slice, Floats64]:
-    """The part of the map that has the face, and where its texels lie [mm], shape (h, w, 3)."""
+    """Rows and columns of the map that hold the face, and their texels' points [mm], (h, w, 3)."""
     head = load("head")
     x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)
     is_face = ((z > 30.0) & (np.abs(x) < 75.0) & (y > -100.0) & (y < 85.0)).all(axis=1)
@@ -204,7 +204,11 @@ def _bump(values: Floats64, middle: float, wide: float) -> Floats64:
 
 
 def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:
-    """Texels that are covered; near: bytes about there, shape (h, w, 4)."""
+    """Make a fold of the texels with a positive cover.
+
+    corner: row and column of the map where both arrays begin. cover: strength of the fold, (h, w).
+    near: bytes of the map, (h, w, 4).
+    """
     rows, columns = np.nonzero(cover > 0.0)
     relief = cover[rows, columns, None] * (near[rows, columns, :3] - LEVEL)
     seen = np.abs(relief).max(axis=1) > 0.5
@@ -213,10 +217,10 @@ def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:
 
 
 def _region(corner: tuple[int, int], cover: Floats64, *places: Floats64) -> _Region:
-    """The smallest part of the map that holds what is covered.
+    """Cut out the smallest rectangle of the map with all texels of a positive cover.
 
-    places: across, along and scale. Arrays are of a part of the map, shape (h, w), whose first row
-    and column are the corner.
+    corner: row and column of the map where all arrays begin. cover: strength of lines, (h, w).
+    places: coordinate across the lines, coordinate along them, and scale, each (h, w).
     """
     spans = [np.flatnonzero((cover > 0.0).any(axis=axis)) for axis in (1, 0)]
     rows, columns = (slice(int(span[0]), int(span[-1]) + 1) for span in spans)

@@ -1,8 +1,8 @@
-"""Courses and depths of a person's lines on forehead, between the brows and beside the eyes.
+"""Draw courses and depths of a person's lines: on the forehead, between brows, beside the eyes.
 
-Lines lie across the pull of their muscles (Kraissl 1951): level on the forehead, upright between
-the brows, a fan beside the eye. A line is a curve over a coordinate along it, with a depth of its
-own in each place. All lengths are chosen by eye, beside those of the built-in head.
+Lines run perpendicular to the pull of muscles (Kraissl 1951): horizontally on the forehead, upright
+between the brows, as a fan beside the eye. The course and the depth of a line are functions of a
+coordinate along the line. All lengths are chosen by eye in comparison with the built-in head.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from ...geometry.arrays import Floats64
 from ..smooth import smooth_step
 from .lines import Fan, Lines, Spread
 
-STEP = 0.5  # [mm] along a line, from one sample to the next
-FOREHEAD_REACH = -62.0, 62.0  # [mm] of x, from the first sample to the last
-GLABELLA_REACH = 0.0, 50.0  # [mm] of y
-FEET_REACH = 5.0, 45.0  # [mm] from where crow's feet meet
-FANS = {  # least and greatest angle of crow's feet [rad]
+STEP = 0.5  # [mm] between samples along a line
+FOREHEAD_REACH = -62.0, 62.0  # [mm]; x of the first and the last sample
+GLABELLA_REACH = 0.0, 50.0  # [mm]; y of the first and the last sample
+FEET_REACH = 5.0, 45.0  # [mm]; distances of the first and the last sample from the fan's hub
+FANS = {  # smallest and greatest angle of crow's feet above the horizontal [rad]
     Fan.WHOLE: (-0.95, 0.5),
     Fan.LOWER: (-0.95, -0.1),
     Fan.CENTRAL: (-0.45, 0.3),
@@ -28,11 +28,13 @@ FANS = {  # least and greatest angle of crow's feet [rad]
 
 
 class Line(NamedTuple):
-    """A line at the samples of its region.
+    """An expression line, sampled along its region.
 
-    course: where it runs, across its direction, [mm] or [rad], shape (s,). depth: there [mm],
-    shape (s,). width: from its bottom to where nothing is left of it, roll: to the top of the skin
-    that swells beside it [mm]. swelling: height of that skin beside the depth.
+    course: coordinate across the region at each sample, [mm] or [rad], (s,).
+    depth: depth at each sample [mm], (s,).
+    width: half width of the furrow [mm].
+    roll: half width of a broad trough around the furrow [mm]; skin beyond the trough looks swollen.
+    swelling: depth of the trough, as a fraction of the furrow's depth.
     """
 
     course: Floats64
@@ -43,7 +45,7 @@ class Line(NamedTuple):
 
 
 def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Lines across the forehead, of which each may be broken in two of unequal height."""
+    """Draw the lines of the forehead; some are broken into two halves of unequal height."""
     x = _samples(FOREHEAD_REACH)
     lowest, highest = 36.5, 70.0  # [mm] above the root of the nose, along the skin
     spacing = (highest - lowest) / lines.forehead
@@ -86,7 +88,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
-    """Strength of a line at each place, 0 to 1; beside: distance from the middle [mm]."""
+    """Strength of a line at each sample, 0 to 1, (s,); beside: distance from the midline [mm]."""
     reach = random.uniform(0.8, 1.25)
     match spread:
         case Spread.WHOLE:
@@ -98,7 +100,7 @@ def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Flo
 
 
 def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Upright lines between the brows, which lean apart upward."""
+    """Draw the upright lines between the brows, which diverge upward."""
     y = _samples(GLABELLA_REACH)
     places = {1: (0.0,), 2: (-5.6, 5.6), 3: (-7.2, 0.4, 6.8)}[lines.frown]
     deepest = random.integers(len(places))
@@ -118,7 +120,7 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Crow's feet of one side, some of which part in two."""
+    """Draw the crow's feet of one side; some of them fork."""
     radius = _samples(FEET_REACH)
     low, high = FANS[lines.fan]
     wide = (high - low) / lines.feet
@@ -145,7 +147,7 @@ def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Floats64:
-    """A curve of mean 0 and deviation 1 with waves of about a length [mm], shape (s,)."""
+    """A random curve of mean 0 and standard deviation 1, (s,); length: mean wavelength [mm]."""
     waves = length / np.array([0.6, 1.0, 1.7])
     begins = random.uniform(0.0, 2.0 * np.pi, 3)
     shares = np.array([0.8, 0.5, 0.33])
@@ -153,5 +155,5 @@ def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Fl
 
 
 def _samples(reach: tuple[float, float]) -> Floats64:
-    """Samples along lines [mm], shape (s,)."""
+    """Coordinates of the samples along lines [mm], (s,)."""
     return np.arange(reach[0], reach[1], STEP)

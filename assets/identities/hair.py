@@ -151,7 +151,7 @@ class Scalp(NamedTuple):
 
 
 def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """Make the parts of short hair, inner side first; colour: sRGB, (3,); length: factor on cut."""
+    """Make the parts of short hair; colour: sRGB, (3,); length: factor on the cut's lengths."""
     points, normals, faces, behind, covers = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit_vectors(np.array([cut.whorl]))[0]

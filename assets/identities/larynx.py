@@ -1,7 +1,8 @@
-"""The prominence of the larynx, which men's necks show: a rounded ridge in the map of fine shape.
+"""Shape the larynx (Adam's apple) as a rounded ridge in the map of fine shape.
 
-The plates of thyroid cartilages meet at a right angle in men and at 120 degrees in women
-(Standring, "Gray's Anatomy", larynx), so women's hardly show. Height and width were chosen by eye.
+The two plates of the thyroid cartilage meet at 90 degrees in men and at 120 degrees in women
+(Standring, "Gray's Anatomy", larynx). So the larynx hardly shows on women's necks. Height and width
+are chosen by eye.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from .relief import Relief, relief_of
 
 
 def larynx_of(person: Person, size: int) -> Relief:
-    """Heights of the larynx in a map of this many texels each way."""
+    """Heights of a person's larynx in a map of (size, size) texels."""
     texels = _neck(size)
     x, y, _ = texels.interpolate(person.vertices[person.faces]).T
     throat = person.vertices[person.anatomy["cervicale"], 1]
@@ -35,7 +36,7 @@ def larynx_of(person: Person, size: int) -> Relief:
 
 @lru_cache(maxsize=2)
 def _neck(size: int) -> Texels:
-    """The texels of the neck below the chin, in front."""
+    """The texels of the front of the neck, below the chin, in a map of (size, size) texels."""
     head = load("head")
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
     is_front = (

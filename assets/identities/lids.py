@@ -1,10 +1,12 @@
-"""The fold of a person's upper lids: the place of its crease, and the fold's overhang.
+"""Draw the folds of a person's upper lids: the height of the crease, and the overhang above it.
 
-Visible skin below the crease of an open eye is 1.4 ± 1.1 mm high in whites of 41 to 60 years. It is
-higher in women, and varies more with age (Cartwright and others 1994, "Measurements of upper eyelid
-and eyebrow dimensions in healthy white individuals", Am. J. Ophthalmology 117:231-234). We assume
-this spread for all people. The fold is in the map of wrinkles alone, and is there at rest. It
-flattens where skin is stretched: the skin of a fold covers the eyeball when the lid shuts.
+Below the crease of an open eye, skin 1.4 ± 1.1 mm high is visible in white persons of 41 to 60
+years. It is higher in women, and varies more with age (Cartwright and others 1994, "Measurements of
+upper eyelid and eyebrow dimensions in healthy white individuals", Am. J. Ophthalmology
+117:231-234). We assume this spread for all people.
+
+Only the map of wrinkles has the fold, which also shows at rest. The fold flattens where the skin is
+stretched, because its skin covers the eyeball when the lid shuts.
 """
 
 from __future__ import annotations
@@ -26,19 +28,19 @@ from .person import Person
 from .relief import Relief, add_to, relief_of
 
 EYES = ("left", "right")
-POINTS = 11  # on the edge of an upper lid
-STEPS = 81  # along its curve, from which searches begin
+POINTS = 11  # vertices on the edge of an upper lid
+STEPS = 81  # samples of the edge's curve, from which searches for the nearest point begin
 
 
 def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
-    """Wrinkles with the folds of a person's upper lids, which show at rest."""
+    """Draw the folds of a person's upper lids, which also show at rest, into wrinkles."""
     found = wrinkles.map.copy()
     size = len(found)
     for side in EYES:
         fold = fold_of(person, side, size)
         near = found[fold.rows, fold.columns, :3]
         down, right = np.gradient(fold.heights.astype(np.float32))
-        darkest = 2.3  # bytes of a furrow's depth for each byte of light that is missing
+        darkest = 2.3  # bytes of depth for each byte of lost light
         more = np.stack([right, -down, (1.0 - fold.light).astype(np.float32)], axis=2)
         steep = 127.0 * size / wrinkles.steepest
         add_to(near, more * np.array([steep, steep, 255.0 * darkest], np.float32))
@@ -50,9 +52,9 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
 
 @lru_cache(maxsize=1)
 def _yielding() -> tuple[Floats32, Floats32]:
-    """Directions of wrinkles with those of the upper lids; the share of folds in each vertex.
+    """The field `across` of wrinkles with the upper lids, and which vertices have folds, (V,).
 
-    Folds lie along the lid, so the skin yields away from its edge.
+    Folds run along the lid, so their skin yields perpendicular to the lid's edge.
     """
     head = load("head")
     across = head.wrinkles.across.copy()
@@ -64,7 +66,7 @@ def _yielding() -> tuple[Floats32, Floats32]:
         away = np.linalg.norm(way, axis=1)
         is_seen = (way[:, 1] > -0.1) & (way[:, 2] > -4.0)
         is_between = (along > 0.15) & (along < 0.95)
-        reach = 6.5  # [mm] from the edge, up to the skin that hangs over the crease
+        reach = 6.5  # [mm] from the lid's edge to the end of the overhanging skin
         is_lid = is_seen & is_between & (away < reach)
         share[is_lid] = 1.0
         is_free = is_lid & (across == 0.0).all(axis=(1, 2))
@@ -77,9 +79,9 @@ def _yielding() -> tuple[Floats32, Floats32]:
 
 
 def fold_of(person: Person, side: str, size: int) -> Relief:
-    """The fold of one upper lid in a map of this many texels each way.
+    """Draw the fold of one upper lid into a map of (size, size) texels.
 
-    All its lengths are chosen by eye, except that of the visible skin.
+    All lengths are chosen by eye, except the height of the visible skin.
     """
     near = _about(side, size)
     texels = near.texels
@@ -93,26 +95,26 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     identity = person.identity
     seen = identity.seen_lid * arch - identity.hooding * smooth_step(0.35, 1.0, along)
     above = away - np.maximum(seen, 0.0)  # the crease
-    # [mm] of visible skin at which the fold hides the crease, and at which it no longer does.
+    # Heights of visible skin [mm]: the fold hides the whole crease, or nothing of it.
     shows = is_lid * smooth_step(-0.2, 0.5, seen)
     groove_width = 0.6  # [mm]
     groove = np.exp(-((above / groove_width) ** 2)) * shows
     hangs = smooth_step(-0.1, 1.3, above) * (1.0 - smooth_step(2.0, 7.0, above)) * is_lid
     groove_depth = 0.2  # [mm]
     fold_height = 0.55 + 0.25 * identity.hooding  # [mm]
-    crease_dark = 0.4  # share of ambient light missing in a crease
-    below_dark = 0.2  # the same below a fold
+    crease_dark = 0.4  # fraction of ambient light that a crease loses
+    below_dark = 0.2  # fraction of ambient light that the skin below a fold loses
     below = shows * (1.0 - smooth_step(-1.2, 0.3, above)) * smooth_step(0.0, 0.4, away)
     heights = fold_height * hangs - groove_depth * groove
     return relief_of(texels, heights, 1.0 - crease_dark * groove - below_dark * below)
 
 
 class _About(NamedTuple):
-    """The texels about an eye.
+    """The texels around an eye, and the nearest point on the upper lid's edge for each of them.
 
-    along: for each texel, the nearest place on the upper lid's edge of the built-in head, from 0 at
-        the inner corner to 1 at the outer one, shape (n,).
-    shares: of the points of the edge in that place, shape (n, 11).
+    along: position of this point along the edge of the built-in head's lid, (n,), from 0 at the
+        inner corner to 1 at the outer one.
+    shares: weights of the edge's vertices at this point, (n, POINTS).
     """
 
     texels: Texels
@@ -121,17 +123,17 @@ class _About(NamedTuple):
 
 
 def _edge(vertices: Floats64, side: str) -> Floats64:
-    """The points of an upper lid's edge, from the inner corner, shape (11, 3)."""
+    """The vertices of an upper lid's edge from the inner corner outward [mm], (POINTS, 3)."""
     return vertices[load("head").rings[f"eye_2_{side}"][:POINTS]]
 
 
 def _shares(along: Floats64, derivative: int = 0) -> Floats64:
-    """Shares of the edge's points in places along its curve, or their derivatives, (n, 11).
+    """Weights of the edge's vertices at positions along its curve, or derivatives, (n, POINTS).
 
-    The curve is smooth and passes near the points. One through them has corners, and so would have
-    the crease, which lies beside it.
+    The curve is a smoothing spline that passes near the vertices. A curve through them would have
+    corners, and so would the crease parallel to it.
     """
-    bend_cost = 1.0  # of the square of the second derivative by points, beside squares of distances
+    bend_cost = 1.0  # weight of squared second derivatives, relative to squared distances
     numbers = np.arange(float(POINTS))
     columns = [
         scipy.interpolate.make_smoothing_spline(numbers, each, lam=bend_cost)
@@ -143,7 +145,10 @@ def _shares(along: Floats64, derivative: int = 0) -> Floats64:
 
 
 def _nearest(places: Floats64, points: Floats64) -> Floats64:
-    """The nearest places on the curve of an edge's points, from 0 to 1, shape (n,)."""
+    """Positions along an edge's curve, 0 to 1, (n,), of the points nearest to some places (n, 3).
+
+    points: vertices of the edge [mm], (POINTS, 3).
+    """
     steps = np.linspace(0.0, 1.0, STEPS)
     along = steps[scipy.spatial.cKDTree(_shares(steps) @ points).query(places)[1]]
     for _ in range(2):  # by Newton's method
@@ -158,7 +163,7 @@ def _nearest(places: Floats64, points: Floats64) -> Floats64:
 @lru_cache(maxsize=8)
 def _about(side: str, size: int) -> _About:
     head = load("head")
-    reach = 11.0  # [mm] about the edge of the lid, beyond all folds
+    reach = 11.0  # [mm] around the edge of the lid, beyond all folds
     points = _edge(head.vertices, side)
     curve = scipy.spatial.cKDTree(_shares(np.linspace(0.0, 1.0, STEPS)) @ points)
     is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)

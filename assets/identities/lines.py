@@ -1,14 +1,17 @@
-"""Lines of expression of a person: how many there are, how far they reach, how deep they get.
+"""Draw the expression lines of a person: their number, length and depth.
 
-Forehead: lines run along all of it in 51 of 100 people, lie in its middle in 25, at its sides in 24
-(Braz, Sakuma 2010, "Frontalis muscle contraction patterns", Surg. Cosmet. Dermatol. 2). Between the
-brows two upright ones are the rule, a single one is rare: 3 of 100 ("Study of glabellar wrinkle
-patterns in the Pakistani population", Lahore 2025). Of people with deep crow's feet three tenths
-each have a whole, a lower and a central fan, and 5 of 100 an upper one; whole ones come with age,
-lower ones with men ("crow's feet lines", 1392 people, PubMed 25789814).
-Lines get deeper with age, in men they are deeper and begin on the forehead, in women beside the
-eyes (Luebberding, Krueger, Kerscher 2014, Dermatol. Surg. 40:22-32). Numbers of lines, lengths and
-depths were not found in print: they are assumed.
+- Forehead: lines cross the whole forehead in 51 % of people, only its centre in 25 %, and only its
+  sides in 24 % (Braz, Sakuma 2010, "Frontalis muscle contraction patterns", Surg. Cosmet.
+  Dermatol. 2).
+- Between the brows: most people have two upright lines, and 3 % have a single one ("Study of
+  glabellar wrinkle patterns in the Pakistani population", Lahore 2025).
+- Crow's feet: of people with deep ones, 30 % each have a whole, a lower and a central fan, and 5 %
+  an upper fan. Whole fans are more frequent at higher age, lower fans in men ("crow's feet lines",
+  1392 people, PubMed 25789814).
+
+Lines become deeper with age. Men have deeper lines, which appear first on the forehead; in women
+lines appear first beside the eyes (Luebberding, Krueger, Kerscher 2014, Dermatol. Surg. 40:22-32).
+We found no published numbers, lengths and depths of lines, so these are assumed.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ import numpy as np
 
 
 class Spread(Enum):
-    """Where lines of the forehead are."""
+    """The part of the forehead that lines cross."""
 
     WHOLE = "whole"
     MIDDLE = "middle"
@@ -37,13 +40,19 @@ class Fan(Enum):
 
 
 class Lines(NamedTuple):
-    """The lines of expression of a person; depths are relative to the built-in head's.
+    """The expression lines of a person; all depths are relative to the built-in head's.
 
-    seed: of courses and breaks. forehead: number of lines across it. spread: where they are. dip:
-    how far they hang down in the middle [mm]. broken: how much of them is missing, 0 to 1. frown:
-    number of upright ones between the brows. uneven: how much shallower all but the deepest are, 0
-    to 1. feet: number of crow's feet. fan: where they are. reach: greatest length of one [mm].
-    fine: number of fine lines on the forehead for each of the others.
+    seed: seed for the courses and the breaks of lines.
+    forehead: number of lines across the forehead.
+    spread: part of the forehead that lines cross.
+    dip: how far lines of the forehead hang down at the midline [mm].
+    broken: how much of the lines is missing, 0 to 1.
+    frown: number of upright lines between the brows.
+    uneven: how much shallower than the deepest the other upright lines are, 0 to 1.
+    feet: number of crow's feet on each side.
+    fan: part of the fan that crow's feet fill.
+    reach: length of the longest crow's foot [mm].
+    fine: number of fine lines on the forehead for each line in `forehead`.
     """
 
     seed: int
@@ -64,7 +73,7 @@ class Lines(NamedTuple):
 
 
 def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
-    """Random lines for a sex and an age [years]."""
+    """Draw random lines for a sex and an age [years]."""
     seed = int(random.integers(2**31))
     spread, frown, fan, dip, broken, uneven, reach = random.uniform(0.0, 1.0, 7).tolist()
     count, feet, *deep = np.clip(random.normal(size=6), -2.0, 2.0).tolist()
@@ -74,7 +83,7 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
     upper = 0.05
     fans = np.cumsum([whole, lower, upper])
     spreads = np.cumsum([0.51, 0.25])
-    # Young skin wrinkles less deep; how much is assumed.
+    # Young skin has shallower wrinkles; how much shallower is assumed.
     depths = (0.72 + 0.5 * late) * (0.92 + 0.16 * man) * np.exp2(0.35 * np.array(deep))
     of_forehead, of_frown, of_feet, of_fold = (depths * [1.0, 1.0, 1.12 - 0.12 * man, 1.0]).tolist()
     return Lines(

@@ -1,8 +1,7 @@
-"""Surgical masks: a pleated sheet from the bridge of the nose to below the chin, and ear loops.
+"""Make surgical masks: a pleated sheet from the nose's bridge to below the chin, and ear loops.
 
-The sheet is a membrane: it hangs on the skin that stands out farthest, the tip of the nose and the
-chin, and lies on the cheeks. It follows skull and mandible like the skin below it. All sizes are
-chosen by eye, after usual masks.
+The sheet is a taut membrane, which rests on the tip of the nose, the chin and the cheeks. It
+follows skull and mandible like the skin below it. All sizes are chosen by eye, after usual masks.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ SHAPE = (57, 49)  # rows from the nose to the chin, columns from right to left
 
 
 def mask(person: Person, colour: Colour) -> Part:
-    """A mask that fits a person; colour: sRGB."""
+    """Make a mask that fits a person; colour: sRGB."""
     middle = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
     middle[2] += 30.0
     turn, height = _places(person)
@@ -52,15 +51,15 @@ def mask(person: Person, colour: Colour) -> Part:
 
 
 class _Piece(NamedTuple):
-    """The sheet, or a loop."""
+    """The sheet of a mask, or a loop."""
 
     surface: Tube
-    colours: Floats64  # (n, 3)
-    shares: Floats64  # shares of the mandible's motion, (n,)
+    colours: Floats64  # sRGB, (n, 3)
+    shares: Floats64  # weights of the mandible's motion, 0 to 1, (n,)
 
 
 def _joined(pieces: list[_Piece]) -> Part:
-    """One part of several pieces."""
+    """Join pieces to one part."""
     surfaces = [each.surface for each in pieces]
     firsts = np.cumsum([0, *(len(each.points) for each in surfaces[:-1])])
     faces = [each.faces + first for each, first in zip(surfaces, firsts, strict=True)]
@@ -77,7 +76,10 @@ def _joined(pieces: list[_Piece]) -> Part:
 
 
 def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) -> list[_Piece]:
-    """The elastics from the corners of the sheet (r, c, 3) to behind the ears."""
+    """Make the four elastics from the corners of the sheet (r, c, 3) to behind the ears.
+
+    shares: weights of the mandible's motion at the sheet's vertices, (r, c).
+    """
     pale = 0.5 * (np.array(colour) + max(colour))
     loops = []
     for name, column in (("right", 0), ("left", -1)):
@@ -93,7 +95,10 @@ def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) ->
 
 
 def _places(person: Person) -> tuple[Floats64, Floats64]:
-    """Places of the sheet's vertices: turns about the upright axis [rad], and heights [mm]."""
+    """Cylinder coordinates of the sheet's vertices, both of SHAPE: angles [rad] and heights [mm].
+
+    The axis of the cylinder is vertical; angle 0 points forward.
+    """
     landmarks = person.vertices[person.landmarks]
     widest = np.radians(66.0)
     across = np.linspace(-1.0, 1.0, SHAPE[1])
@@ -109,7 +114,10 @@ def _places(person: Person) -> tuple[Floats64, Floats64]:
 
 
 def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats64) -> Floats64:
-    """Distance of the skin from the upright axis at the vertices of the sheet [mm]."""
+    """Distances of the skin from the vertical axis below the sheet's vertices [mm], of SHAPE.
+
+    middle: a point of the axis. turn, height: as `_places` returns them.
+    """
     skin = person.vertices
     corners = skin[person.faces]
     corners = corners[corners[:, :, 2].min(axis=1) > middle[2] - 40.0]
@@ -119,7 +127,7 @@ def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats
     weights = np.stack([first[is_within], second[is_within]], axis=-1) / steps
     weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
     points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - middle
-    radius = 65.0  # [mm], to convert degrees into lengths
+    radius = 65.0  # [mm]; converts angles into lengths
     there = np.column_stack([radius * np.arctan2(points[:, 0], points[:, 2]), points[:, 1]])
     reach = np.hypot(points[:, 0], points[:, 2])
     places = np.column_stack([radius * turn.ravel(), height.ravel()])
@@ -129,13 +137,17 @@ def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats
 
 
 def _membrane(skin: Floats64) -> Floats64:
-    """Distance of a taut sheet over the skin [mm]; its upper edge and sides lie on the skin."""
+    """Distances of a taut sheet from the axis [mm], of SHAPE.
+
+    skin: distances of the skin from the axis [mm], of SHAPE. The upper edge and the sides of the
+    sheet lie on the skin.
+    """
     clearance = 2.6  # [mm]
     below = skin + clearance
     sheet = below.copy()
     for _ in range(600):
         around = np.pad(sheet, 1, mode="edge")
-        # Bending across is stiffer than along pleats, which give way.
+        # The sheet is stiffer across the pleats than along them, because pleats open.
         mean = 0.3 * (around[:-2, 1:-1] + around[2:, 1:-1])
         mean += 0.2 * (around[1:-1, :-2] + around[1:-1, 2:])
         sheet = np.maximum(below, mean)
@@ -146,7 +158,11 @@ def _membrane(skin: Floats64) -> Floats64:
 
 
 def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
-    """Heights of three pleats [mm], and depths of their creases, 0 to 1."""
+    """Heights of three pleats [mm], and strengths of the dark creases between them, 0 to 1.
+
+    down: rows from 0 (top) to 1, (r, 1). aside: distances of columns from the middle, 0 to 1, (c,).
+    Both results have the shape (r, c).
+    """
     count = 3
     place = (down - 0.28) / 0.5 * count
     phase = np.where((place > 0.0) & (place < count), place % 1.0, 0.0)
@@ -157,14 +173,20 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
 
 
 def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
-    """Mandible shares of the sheet's vertices: those of the skin, smooth over the lips."""
+    """Weights of the mandible's motion at the sheet's vertices, (r, c).
+
+    They are the weights of the skin, smoothed across the lips.
+    """
     near = scipy.spatial.cKDTree(person.vertices).query(sheet, k=4)[1]
     shares = person.mandible_weight[near].mean(axis=-1)
     return np.asarray(scipy.ndimage.gaussian_filter(shares, 3.0, mode="nearest"))
 
 
 def _loop(person: Person, start: Floats64, ear: Floats64, rise: float) -> Floats64:
-    """An elastic from a corner of the sheet to behind the ear, (n, 3); rise: above the tragion."""
+    """The path of an elastic from a corner of the sheet to behind the ear [mm], (n, 3).
+
+    ear: the tragion. rise: height above it where the elastic passes the ear [mm].
+    """
     side = np.sign(start[0])
     end = np.array([ear[0] + side * 2.5, ear[1] + rise, ear[2] - 4.0])
     straight = beside_head(person.vertices, start, end, 0.9)

@@ -1,4 +1,4 @@
-"""Persons by number or by name."""
+"""Make persons with a number or a name, in their own colours."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from .space import Identity, Sex, sample_identity
 
 
 class _Known(NamedTuple):
-    """The person with a name: a number's face of some sex and age, in chosen colours."""
+    """A named person: the face of a number (`seed`) with chosen sex, age, colours and cut."""
 
     seed: int
     sex: Sex
@@ -37,11 +37,11 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Colours:
-    """A person's tone of skin (ITA [deg]), blood in it, colour of eyes, and features."""
+    """A person's colours of skin and eyes, and features of the texture."""
 
-    angle: float
-    blood: float
-    irises: str
+    angle: float  # skin tone, ITA [deg]
+    blood: float  # amount of blood in the skin, relative to most skin of this tone
+    irises: str  # a colour of IRIS_SHARES
     features: Features
 
 
@@ -53,9 +53,9 @@ def own_colours(
     irises: str | None = None,
     population: Population = EVERYBODY,
 ) -> Colours:
-    """The colours of a number, always the same; all tones are equally likely.
+    """Draw the colours of a person's number; a number always gives the same colours.
 
-    angle, irises: replace the number's own.
+    All tones of the population are equally likely. angle (ITA [deg]), irises: replace drawn ones.
     """
     random = np.random.default_rng([seed, 18])
     drawn_angle = float(random.uniform(*population.tones))
@@ -68,12 +68,12 @@ def own_colours(
 def in_own_colours(
     person: Person, seed: int, *, angle: float | None = None, irises: str | None = None
 ) -> Person:
-    """A person with the skin, the eyes and the hair of a number (`own_colours`)."""
+    """Give a person the skin, the eyes and the hair of a number (`own_colours`)."""
     return in_colours(person, own_colours(person.identity, seed, angle=angle, irises=irises))
 
 
 def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
-    """A person with skin, eyes and hair of these colours; shrink: as in `coloured`."""
+    """Give a person skin, eyes and hair of some colours; shrink: as in `coloured`."""
     return coloured(
         person,
         angle=colours.angle,
@@ -86,14 +86,17 @@ def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
 
 @cache
 def person_in_words(who: int | str) -> str:
-    """Name, sex and age of the person with a number or a name: "Person 7, woman, about 60"."""
+    """Describe the person with a number or a name, such as "Person 7, woman, about 60"."""
     known = sample_identity(who) if isinstance(who, int) else NAMED[who]
     name = f"Person {who}" if isinstance(who, int) else who.capitalize()
     return f"{name}, {known.sex.value}, about {5 * round(known.age / 5.0)}"
 
 
 def person_called(who: int | str) -> Person:
-    """The person with a number (0 or more) or a name in `NAMED`, in own colours."""
+    """Make the person with a number (0 or more) or a name of `NAMED`, in the person's own colours.
+
+    Raises KeyError for other names.
+    """
     if isinstance(who, int):
         made = in_own_colours(make_person(sample_identity(who)), who)
         return replace(made, called=str(who))

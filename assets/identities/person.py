@@ -1,9 +1,9 @@
-"""A head of another person, made from the built-in one: same triangles, texture and muscles.
+"""Make the head of another person from the built-in head: same triangles, texture and muscles.
 
     person = make_person(sample_identity(7))
 
-The skin is the mean person, moved by the modes with the identity's weights (space.py). Then
-eyeballs are placed, and lids are laid on them.
+The skin is the mean person, displaced by weighted modes (space.py). Then the eyeballs are placed,
+and the lids are laid on them.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from .space import Identity, Sex, person_space, scores_of
 
 @dataclass(frozen=True)
 class Person(FittedHead):
-    """A head with the triangles of the built-in one. Besides the fields of a fitted head it has:
+    """A head with the triangles of the built-in head. It adds these fields to a fitted head:
 
-    mandible_weight, jaw_axis, anatomy, mirror: as in `Head`. `mirror` is that of the built-in head,
-        even if left and right differ.
-    identity: its weights and features.
-    in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
+    mandible_weight, jaw_axis, anatomy: as in `Head`.
+    mirror: as in the built-in head, even if the left and the right half differ.
+    identity: weights of the modes, and features.
+    in_tone: makes the albedo (H, W, 3) for another skin tone, ITA [deg].
     """
 
     mandible_weight: Floats64
@@ -51,26 +51,26 @@ class Person(FittedHead):
     in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)
 
     def fade(self) -> None:
-        """A shirt covers the edge of its neck."""
+        """Do nothing: a shirt covers the lower edge of a person's neck."""
 
     @property
     def measures(self) -> dict[str, float]:
-        """The measures of the person, code -> [mm]."""
+        """The measures of the person: code -> length [mm]."""
         return measures_of(self.vertices, self.anatomy)
 
     @property
     def scores(self) -> dict[str, float]:
-        """Deviations of the measures from the means of the person's sex, code -> score."""
+        """Deviations of the measures from the mean of the person's sex: code -> z-score."""
         return scores_of(self.measures, self.identity.sex)
 
 
 def make_person(identity: Identity) -> Person:
-    """The head of an identity; the same numbers give the same head.
+    """Make the head of an identity; the same identity always gives the same head.
 
-    If its skin would turn over or cut itself, the whole face is brought nearer to the mean; the
-    person's `identity` has the used weights.
+    If triangles of the skin would turn over or intersect, the weights are scaled down. The person's
+    `identity` has the scaled weights.
     """
-    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # shares of the weights, tried in turn
+    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # factors on the weights, tried in this order
     for share in shares[:-1]:
         with contextlib.suppress(AssetError):
             return _made(identity if share == 1.0 else identity.scaled(share))
@@ -78,29 +78,29 @@ def make_person(identity: Identity) -> Person:
 
 
 def _made(identity: Identity) -> Person:
-    """The head of an identity; raises AssetError if its skin would turn over or cut itself."""
+    """Make the head of an identity; if its skin turns over or intersects, raises AssetError."""
     known = load("head")
     space = person_space()
     beside = known.vertices[:, :1]
-    middle_width = 20.0  # [mm] beside the middle, over which an uneven face goes to its own side
+    middle_width = 20.0  # [mm] beside the midline, over which the unevenness changes its sign
     askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, middle_width)
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = _resting_face(known, bent, eyes, identity)
-    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # shares by which rows around the eye are laid on it
+    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
     vertices = lids_on_eyes(known, bent, eyes, lid_shares)
     neck = vertices[known.anatomy["menton"]], identity.sex
     vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError(
-            "no person has these weights: a triangle of the skin is turned over, or cuts another"
+            "these weights make no face: a triangle of skin is turned over, or intersects another"
         )
     vertices.flags.writeable = False
     named = _named(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
     larger = float(np.sqrt(spread / usual))
-    give = 0.2  # smoothing of the warp that organs in the head follow
+    give = 0.2  # smoothing of the warp that organs follow
     warp = ThinPlateSpline(known.vertices[named], vertices[named], give)
     normals = vertex_normals(vertices, known.faces)
     landmarks = vertices[known.landmarks]
@@ -140,13 +140,16 @@ def _made(identity: Identity) -> Person:
 
 
 def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
-    """Points of a skin or a shirt; those below the jaw are moved to a neck of that sex."""
-    jaw_slope = 0.35  # of the jaw's line, rising to the back
-    jaw_depth = 20.0  # [mm] where it ends
+    """Move points (n, 3) of skin or shirt below the jaw onto a neck as wide as that of a sex.
+
+    chin: the menton [mm], (3,).
+    """
+    jaw_slope = 0.35  # slope of the lower jaw's edge, which rises to the back
+    jaw_depth = 20.0  # [mm]; z at which this edge ends
     below = chin[1] - points[:, 1:2] + jaw_slope * (chin[2] - np.maximum(points[:, 2:], jaw_depth))
-    # Share for women's necks: 330 mm around, men's 398 (Gordon and others 2014, ANSUR II).
+    # Necks measure 330 mm around in women and 398 mm in men (Gordon and others 2014, ANSUR II).
     narrowing = 0.17
-    fade_height = 30.0  # [mm] below the jaw, over which the neck begins
+    fade_height = 30.0  # [mm] below the jaw over which narrowing begins
     narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
     neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
     return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))
@@ -155,10 +158,10 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
 def _resting_face(
     known: Head, vertices: Floats64, eyes: tuple[Eye, ...], identity: Identity
 ) -> Floats64:
-    """Vertices with the resting lids, corners of the mouth and brows of an identity."""
+    """Move lids, corners of the mouth and brows to an identity's rest; returns vertices (V, 3)."""
     x = vertices.copy()
-    lower_lid_height = -0.96  # in radii of the iris
-    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # shares of rows around the eye in the lid's motion
+    lower_lid_height = -0.96  # above the pupil, in radii of the iris
+    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # weights of the rings around the eye in this motion
     for eye in eyes:
         upper = 1.0 - identity.covered / eye.iris_radius
         for lid, height in (("superius", upper), ("inferius", lower_lid_height)):
@@ -171,14 +174,14 @@ def _resting_face(
                 is_above = vertices[ring, 1] > inner[1] + along * (outer[1] - inner[1])
                 open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
                 x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
-    # Brows slide over the forehead; touching lips move in one direction.
+    # Brows move tangentially to the forehead; touching lips move together.
     normals = vertex_normals(vertices, known.faces)
     up = np.array([0.0, 1.0, 0.0])
     line = vertices[known.landmarks[[48, 54, 62, 66]], 1]
-    most_turn = 1.8  # [mm] that corners of the mouth turn
+    most_turn = 1.8  # [mm]; greatest motion of the corners of the mouth
     turned = np.clip(identity.corners - line[:2].mean() + line[2:].mean(), -most_turn, most_turn)
-    corner_radius = 9.0  # [mm] about corners of the mouth: skin there follows them
-    brow_radius = 11.0  # [mm] about brows
+    corner_radius = 9.0  # [mm] within which skin follows the corners of the mouth
+    brow_radius = 11.0  # [mm] within which skin follows the brows
     for points, way, wide in (
         (known.landmarks[48:55:6], turned * up, corner_radius),
         (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), brow_radius),
@@ -189,10 +192,10 @@ def _resting_face(
 
 
 def _resting(known: Head, identity: Identity) -> Floats32:
-    """How far furrows show in a face at rest, 0 to 1, shape (V,); not between the brows."""
+    """Strength of furrows at rest, 0 to 1, (V,); between the brows it is 0."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
-    # [mm] about the glabella, where furrows of age would look like a frown.
+    # [mm] around the glabella in x, y and z, where furrows of age would look like a frown.
     frown_radii = np.array([15.0, 18.0, 30.0])
     frowned = np.exp(-((off / frown_radii) ** 2).sum(axis=1))
     most_resting = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
@@ -201,14 +204,14 @@ def _resting(known: Head, identity: Identity) -> Floats32:
 
 
 def _own_places(known: Head, identity: Identity) -> Floats64:
-    """Depths of furrows at each vertex, relative to most people of that age, shape (V,).
+    """Depths of furrows at each vertex, relative to most people of the same age, (V,).
 
-    Chosen: waves over the face, with the person's phases; both halves are alike.
+    The factor varies in random waves over the face, equally on both halves. This is assumed.
     """
     phases = np.array([identity.age, identity.covered]).view(np.uint32)
     random = np.random.default_rng(phases)
     wave_count = 5
-    length = 60.0  # [mm] of a wave on average
+    length = 60.0  # [mm]; mean wavelength
     ways = random.normal(0.0, 2.0 * np.pi / length, (3, wave_count)) / np.sqrt(3.0)
     begins = random.uniform(0.0, 2.0 * np.pi, wave_count)
     halves = np.abs(known.vertices * [1.0, 0.0, 0.0]) + known.vertices * [0.0, 1.0, 1.0]
@@ -217,13 +220,13 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
 
 
 def _named(known: Head) -> Integers32:
-    """Vertices that organs in the head follow: landmarks, named points, rows of lips and lids."""
+    """Numbers of the vertices that organs follow: landmarks, anatomy, rings of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
 
 
 def _eye(known: Head, eye: Eye, vertices: Floats64) -> Eye:
-    """An eyeball behind its lids; eyeballs differ less than their openings."""
+    """Place an eyeball behind its lids; its size varies less than the opening of the lids."""
     corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
     before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
     scale = float(np.sqrt(now / before))

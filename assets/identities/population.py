@@ -1,10 +1,12 @@
-"""The population of random persons: shares of sexes, cuts and eye colours, ages, tones.
+"""The population of random persons: frequencies of sexes, cuts and eye colours; ages and tones.
 
-Cuts are chosen by eye; tones and ages are drawn evenly. Irises of very light skin: in the United
-States 41 of 100 people have brown eyes, 15 specked ones, 12 green and 32 blue or grey ones
-(American Academy of Ophthalmology 2016, as tabulated by Statistic Brain), of all tones; of its
-whites 34 have blue ones (Grant, Lauderdale 2002, Ann. Hum. Biol. 29:657-666). We assume the shares
-of light skin between these, the split of blue and grey, and how fast both fade with darker skin.
+Tones and ages are drawn uniformly. Frequencies of cuts are chosen.
+
+In the United States, 41 % of all people have brown eyes, 15 % specked, 12 % green and 32 % blue or
+grey eyes (American Academy of Ophthalmology 2016, as tabulated by Statistic Brain). Among whites,
+34 % have blue eyes (Grant, Lauderdale 2002, Ann. Hum. Biol. 29:657-666). From these figures we
+assume the frequencies for very light skin, the ratio of blue to grey eyes, and how fast both become
+rare with darker skin.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from ..smooth import smooth_step
 
 LIGHTEST = 70.0  # individual typology angle of skin, ITA [deg]
 DARKEST = -55.0
-ONLY_BROWN = 28.0  # ITA below which blue eyes are rare
+ONLY_BROWN = 28.0  # ITA [deg] below which blue eyes are rare
 YOUNGEST = 20.0  # [years]
 OLDEST = 75.0
 IRIS_SHARES = MappingProxyType(
@@ -49,11 +51,13 @@ CUTS_OF_MEN = MappingProxyType(
 
 @dataclass(frozen=True)
 class Population:
-    """The population of random persons; the default is that of `person_called`.
+    """The population of random persons; `person_called` draws from the default.
 
-    women: share of women, 0 to 1. ages: lowest and highest [years]. tones: darkest and lightest,
-    ITA [deg]. irises: shares of their colours with light skin. cuts_of_women, cuts_of_men: shares
-    of cuts of hair.
+    women: fraction of women, 0 to 1.
+    ages: lowest and highest age [years].
+    tones: darkest and lightest skin tone, ITA [deg].
+    irises: frequencies of eye colours among people with very light skin.
+    cuts_of_women, cuts_of_men: frequencies of hair cuts.
     """
 
     women: float = 0.5
@@ -70,11 +74,12 @@ EVERYBODY = Population()
 def drawn_irises(
     random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
 ) -> str:
-    """A random colour of eyes; shares: those with very light skin. Dark skin has brown eyes.
+    """Draw a random colour of eyes for a skin tone; angle: ITA [deg].
 
-    Hazel eyes occur with darker skin than eyes without brown.
+    shares: frequencies with very light skin. With darker skin, green, blue and grey eyes become
+    rare first, then hazel eyes.
     """
-    # ITA up to which nobody has such eyes, and from which they have their full share.
+    # ITA [deg] up to which nobody has such eyes, and from which their frequency is full.
     fades = {"brown": (-90.0, -80.0), "hazel": (-5.0, 45.0)}
     pale_fade = 15.0, 50.0
     weights = {

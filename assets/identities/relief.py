@@ -1,4 +1,4 @@
-"""Additional heights of a person's skin over the built-in head's, in a part of its maps."""
+"""Add relief to a part of a map: heights of a person's skin above that of the built-in head."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from ..model import FineShape
 
 
 class Relief(NamedTuple):
-    """A part of a map, with a person's heights and light there.
+    """Heights and light of a person's skin in a rectangle of a map.
 
-    rows, columns: the part. heights: added to the skin [mm], (h, w). light: share of ambient light
-    that arrives, (h, w).
+    rows, columns: the rectangle.
+    heights: added to the skin [mm], (h, w).
+    light: fraction of ambient light that reaches the skin, 0 to 1, (h, w).
     """
 
     rows: slice
@@ -28,7 +29,7 @@ class Relief(NamedTuple):
 
 
 def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
-    """The part of a map that holds these texels; heights and light: those of each, shape (n,)."""
+    """Make a relief of n texels; heights [mm] and light (0 to 1) of each texel, (n,)."""
     top, left = texels.rows.min(), texels.columns.min()
     rows = slice(int(top), int(texels.rows.max()) + 1)
     columns = slice(int(left), int(texels.columns.max()) + 1)
@@ -41,14 +42,14 @@ def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
 
 
 def add_to(part: Image, more: Floats32) -> None:
-    """Add to bytes of a map, which keep their bounds; both of one shape."""
+    """Add values to the bytes of a map in place, and clip them to 0 to 255; equal shapes."""
     changed = part + more
     np.rint(changed, out=changed)
     part[...] = np.clip(changed, 0.0, 255.0, out=changed)
 
 
 def with_reliefs(known: FineShape, reliefs: Sequence[Relief]) -> FineShape:
-    """A fine shape with reliefs in maps of its size."""
+    """Add reliefs, made for maps of the same size, to a fine shape."""
     slopes = known.slopes.copy()
     height, width = slopes.shape[:2]
     for relief in reliefs:

@@ -1,8 +1,8 @@
-"""Shirts of several colours, with a band, a roll, wings or a V around the neck.
+"""Make shirts of several colours and four collars: a band, a roll, wings or a V.
 
-The built-in shirt ends in a band. All else lies on this shirt, in places along its columns, from
-the front to the back, and down from the upper edge of the band. So it fits any neck. All sizes are
-chosen by eye, after usual shirts and jerseys.
+The built-in shirt ends in a band. Other collars are laid on this shirt, so they fit any neck. Their
+points have two coordinates on its surface: the column, and the depth below the upper edge of the
+band. All sizes are chosen by eye, after usual shirts and jerseys.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .wires import Colour, Tube, sheet
 
 SHIRTS: Mapping[str, Colour] = MappingProxyType(
     {
-        "blue": (0.22, 0.24, 0.28),  # of the built-in head
+        "blue": (0.22, 0.24, 0.28),  # the shirt of the built-in head
         "white": (0.80, 0.79, 0.77),
         "grey": (0.46, 0.46, 0.47),
         "black": (0.09, 0.09, 0.10),
@@ -34,21 +34,21 @@ SHIRTS: Mapping[str, Colour] = MappingProxyType(
         "sky": (0.47, 0.59, 0.72),
     }
 )
-COLUMNS = 52  # columns of the built-in shirt, from the front over the left shoulder
-BAND = 4  # its row at the upper edge of the band, outside
+COLUMNS = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
+BAND = 4  # row of the built-in shirt at the upper outer edge of the band
 
 
 class _Cloth(NamedTuple):
-    """A piece of a shirt, and its colours (n, 3), sRGB."""
+    """A piece of a shirt, and the colours of its points, sRGB, (n, 3)."""
 
     surface: Tube
     colours: Floats64
 
 
 def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
-    """The built-in shirt of a person, in a colour of SHIRTS, with a collar of COLLARS.
+    """Change the built-in shirt of a person to a colour of SHIRTS and a collar of COLLARS.
 
-    skin: that of the person, (V, 3). Raises KeyError for other colours and collars.
+    skin: vertices of the person's head [mm], (V, 3). Raises KeyError for other colours and collars.
     """
     pieces = COLLARS[collar](shirt, skin, np.array(SHIRTS[colour]))
     surfaces = [each.surface for each in pieces]
@@ -64,24 +64,24 @@ def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
 
 
 def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
-    """The built-in shirt in another colour, with its own shades."""
+    """Change the colour (sRGB, (3,)) of the built-in shirt, and keep its shades."""
     shade = shirt.colours / np.array(SHIRTS["blue"])
     vertices, normals = (each.astype(np.float64) for each in (shirt.vertices, shirt.normals))
     return _Cloth(Tube(vertices, normals, shirt.faces), shade * colour)
 
 
 def _plain(shirt: Part, colour: Floats64) -> Floats64:
-    """The colour of this shirt without shade."""
+    """The unshaded colour of a person's shirt, sRGB, (3,)."""
     return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
 
 
 def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
-    """The built-in shirt in a colour."""
+    """Make the built-in shirt in another colour."""
     return [_in_colour(shirt, colour)]
 
 
 def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
-    """A high collar, turned over on itself around the neck."""
+    """Make a shirt with a high collar that is folded over."""
     columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
     surface = _Surface(shirt)
     band, root = (
@@ -91,11 +91,11 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / COLUMNS)
     rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
-    axis = np.array([0.0, 0.0, -8.0])  # [mm] of the neck
+    axis = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
     inner = _off_neck(skin, upper, axis)
     out = (inner - axis) * [1.0, 0.0, 1.0]
     out /= np.linalg.norm(out, axis=1, keepdims=True)
-    # (share of the way down from the upper edge to the root, how far outside [mm])
+    # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
     wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMNS)[:, None]
@@ -110,22 +110,22 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 
 def _ribs(count: int) -> Floats64:
-    """Shades of columns of knitting; two columns are a rib."""
+    """Shades of knitted columns, (count,); each rib is two columns wide."""
     return np.where(np.arange(count) % 2, 0.9, 1.03)
 
 
 def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
-    """The collar of a shirt, which is turned down over its band, and a buttoned front."""
+    """Make a shirt with a turned-down collar and a buttoned front."""
     surface = _Surface(shirt)
     down = np.linspace(0.0, 1.0, 13)[:, None]
-    along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one point to the other
-    opening = 0.35 + 3.6 * down**0.6  # columns from the middle to the edges in front
+    along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one tip to the other
+    opening = 0.35 + 3.6 * down**0.6  # columns between the midline and each edge of the collar
     columns = opening + along * (COLUMNS - 2.0 * opening)
     from_front = np.minimum(columns, COLUMNS - columns)
     length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
     fold = surface.down(columns, np.zeros_like(columns))
     hem = surface.down(columns, length) + 2.6 * surface.outward(columns, length)
-    lift = np.array([0.0, 2.2, 0.0])  # [mm] of the fold above the band
+    lift = np.array([0.0, 2.2, 0.0])  # [mm]; height of the fold above the band
     out = surface.outward(columns, np.full_like(columns, 8.0))
     bulge = 4.0 * (down * (1.0 - down))[..., None] + 1.2
     outer = fold + lift + down[..., None] * (hem - fold - lift) + bulge * out
@@ -143,7 +143,7 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 
 def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
-    """The strip down the front, and two buttons on it."""
+    """Make the strip down the front, and three buttons on it."""
     across = np.array([-15.0, -14.0, -11.0, 0.0, 11.0, 14.0, 15.0])  # [mm]
     away = np.array([-1.0, 1.2, 1.5, 1.5, 1.5, 1.2, -1.0])
     depths = np.linspace(1.0, 200.0, 60)[:, None]
@@ -161,7 +161,7 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
         around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
         profile = ((5.3, 1.2), (5.3, 3.2), (4.6, 3.6), (3.4, 3.2), (0.05, 3.1))
         rows = [middle + radius * around + height * out for radius, height in profile]
-        # Counter-clockwise, seen from outside.
+        # Triangles run counter-clockwise, seen from outside.
         rims = np.stack(rows)[::-1, :]
         shades = np.array([0.9, 0.9, 1.05, 0.95, 0.8])
         pieces.append(_rowed(rims, shades[:, None], light, closed=True))
@@ -169,9 +169,9 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
 
 
 def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
-    """A jersey with a V at the neck, over a shirt of another colour."""
+    """Make a jersey with a V neck over a shirt of another colour."""
     surface = _Surface(shirt)
-    # From the point of the V to beside the neck, over the left half.
+    # The left half of the V, from its lowest point to the side of the neck.
     half = np.linspace(0.0, 1.0, 200)[:, None]
     lowest = 84.0  # [mm] below the band
     beside = 17.5
@@ -180,7 +180,7 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
     from_front = np.minimum(columns, COLUMNS - columns)
     edge = np.interp(from_front, found, line[:, 0])
-    ribbed = 15.0  # [mm] of its border's width
+    ribbed = 15.0  # [mm]; width of the ribbed border
     steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
     away = np.array([0.2, 2.2, 3.1, 3.4, 3.4, 3.2, 2.6, 2.0, 2.6])
     shades = np.array([0.5, 0.85, 1.0, 1.0, 1.0, 0.97, 0.8, 0.7, 0.95])
@@ -205,7 +205,10 @@ COLLARS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = Mapp
 
 
 class _Surface:
-    """The outside of the built-in shirt, from the upper edge of the band down."""
+    """The outer surface of the built-in shirt, from the upper edge of the band down.
+
+    A point has two coordinates: a fractional column, 0 to COLUMNS, and a depth below the edge [mm].
+    """
 
     def __init__(self, shirt: Part) -> None:
         rows = (len(shirt.vertices) - 1) // COLUMNS
@@ -218,20 +221,20 @@ class _Surface:
         self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND:-1]
 
     def lowest(self, columns: Floats64) -> Floats64:
-        """Depth of its end in columns [mm], in their shape."""
+        """Depths of the shirt's lower edge in some columns [mm], of the shape of `columns`."""
         return np.asarray(np.interp(columns, np.arange(COLUMNS + 1), self._depths[-1]))
 
     def down(self, columns: Floats64, depths: Floats64) -> Floats64:
-        """Points in columns at depths below the edge [mm], for (r, n) or broadcast, (r, n, 3)."""
+        """Points [mm], (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
         return self._read(self._grid, columns, depths)
 
     def outward(self, columns: Floats64, depths: Floats64) -> Floats64:
-        """Unit normals there."""
+        """Unit normals, (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
         normals = self._read(self._normals, columns, depths)
         return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
     def columns_at(self, across: Floats64, depths: Floats64) -> Floats64:
-        """The columns of the front that are so far aside [mm] at depths, (r, n)."""
+        """Columns of the front, (r, n), at x = `across` [mm], (r, n), and depths [mm], (r, 1)."""
         places = np.linspace(-13.0, 13.0, 131)
         found = self.down(places % COLUMNS, np.broadcast_to(depths, (len(depths), len(places))))
         rows = [np.interp(x, line[:, 0], places) for x, line in zip(across, found, strict=True)]
@@ -253,10 +256,10 @@ class _Surface:
 
 
 def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
-    """Points around the neck, (n, 3), moved outward off the skin."""
-    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm], more at the back, to which heads bend
+    """Move points around the neck, (n, 3), outward off the skin (V, 3); axis: a point, (3,)."""
+    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm]; more at the back, where heads bend
     apart = skin - axis
-    radius = 60.0  # [mm] at which degrees are counted as lengths
+    radius = 60.0  # [mm]; converts angles into lengths
     places = np.column_stack([radius * np.arctan2(apart[:, 0], apart[:, 2]), skin[:, 1]])
     neck = skin[:, 1] < points[:, 1].max() + 8.0
     out = points - axis
@@ -273,7 +276,7 @@ def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
 
 
 def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:
-    """The surface of rows of points, (r, n, 3); closed: a row ends in itself."""
+    """Make a surface of rows of points, (r, n, 3); closed: the last column joins the first."""
     numbers = np.arange(points[..., 0].size).reshape(points.shape[:2])
     faces = grid_faces(numbers, closed=closed)
     places = points.reshape(-1, 3)
@@ -281,6 +284,6 @@ def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:
 
 
 def _rowed(points: Floats64, shades: Floats64, colour: Floats64, *, closed: bool = False) -> _Cloth:
-    """A piece of rows of points; shades: those of each point, (r, n), or broadcast."""
+    """Make a piece of rows of points, (r, n, 3); shades: factors on colour, broadcast to (r, n)."""
     shaded = np.broadcast_to(shades, points.shape[:2]).reshape(-1, 1) * colour
     return _Cloth(_surface_of(points, closed=closed), shaded)

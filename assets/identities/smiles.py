@@ -1,9 +1,9 @@
-"""A person's smile: the muscles that join the one that draws the corners up.
+"""Give a person an individual smile: muscles that pull beside zygomaticus major.
 
-In a canine smile the raisers of the upper lip pull first, in 31 of 100 people; in 67 the corners
-lead, and 2 bare both rows of teeth (Rubin 1974, "The anatomy of a smile", Plast. Reconstr. Surg.
+In 67 % of people the corners of the mouth rise first. In a canine smile (31 %) the upper lip rises
+first, and 2 % bare both rows of teeth (Rubin 1974, "The anatomy of a smile", Plast. Reconstr. Surg.
 53:384-387). Women show gums twice as often as men (Tjan and others 1984, J. Prosthet. Dent.
-51:24-28). The share of each muscle is chosen by eye.
+51:24-28). The weight of each muscle is chosen by eye.
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ from ..model import Layer
 
 
 class Smile(NamedTuple):
-    """Differences of a person's smile from the built-in one, which has none of these.
+    """How a person's smile differs from the built-in smile, for which all fields are 0.
 
-    lift: rise of the upper lip, 0 to 1. curl: roll of this lip, spread: width of the mouth, drop:
-    opening of the jaw, each from -1 (less) to 1 (more).
+    lift: rise of the upper lip, 0 to 1.
+    curl: roll of the upper lip, -1 (less) to 1 (more).
+    spread: width of the mouth, -1 to 1.
+    drop: opening of the jaw, -1 to 1.
     """
 
     lift: float = 0.0
@@ -35,7 +37,7 @@ CANINE_SHARE = 0.33
 
 
 def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
-    """A random smile for a sex."""
+    """Draw a random smile for a sex."""
     kind, share, *others = random.uniform(0.0, 1.0, 5)
     share *= 1.0 if is_woman else 0.8
     lift = 0.5 + 0.5 * share if kind < CANINE_SHARE else 0.25 * share
@@ -44,7 +46,7 @@ def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
 
 
 def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
-    """Tables of controls with AU12 and joy of a smile."""
+    """Change AU12 and joy in the tables of controls to a person's smile."""
     added = {
         "AU12": {
             "zygomaticus_minor": 0.45 * smile.lift,
@@ -69,7 +71,7 @@ def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
 
 
 def _with(row: Mapping[str, Any], added: Mapping[str, float]) -> Mapping[str, Any]:
-    """A row with more or less of some shares, which stay between 0 and 1."""
+    """Add to some weights of a row, and clip them to 0 to 1."""
     changed = {
         name: float(np.clip(row.get(name, 0.0) + more, 0.0, 1.0)) for name, more in added.items()
     }

@@ -1,22 +1,25 @@
-"""Differences between people, on the vertices of the built-in head: modes, and random persons.
+"""A linear model of face shapes on the built-in head's vertices, and random persons drawn from it.
 
-A person is the mean with a weight for each mode; a weight of 1 is one deviation of people. The
-modes were fitted to those of ICT-FaceKit like the head's form (docs/head.md), and turned so that
-the first ones move the face most (principal components). They depend on neither sex nor age.
+A face is the mean plus a weighted sum of modes. A weight of 1 is one standard deviation of people.
+The modes were fitted to those of ICT-FaceKit (docs/head.md). They are principal components: the
+first modes move the face most. They depend on neither sex nor age. Source: Blanz, Vetter 1999, "A
+morphable model for the synthesis of 3D faces".
 
-Weights are drawn from the distribution of people, widened 1.1 to 1.2 times except for the size of
-the head. Sex and age move its mean: the sexes lie as far apart as the published measures of women
-and men (`assets.norms`). Some points move, too (brow ridge, jaw and chin of men; skin that sags);
-these amounts are chosen by eye, after anatomists. The norms are of Europeans. For each person, the
-middle lies at a random share, 0 to 1, of the way from the mean of all people with these modes to
-the means of the norms. Neither this share nor the form depends on the tone of the skin: this
-independence is an assumption. Source: Blanz, Vetter 1999, "A morphable model for the synthesis of
-3D faces".
+Weights are drawn from a normal distribution. Its deviations are 1.1 to 1.2 times those of people,
+except for the size of the head. Sex and age move its mean:
 
-Three widths were measured with calipers, which press on the skin over the bone (`norms`). A surface
-is wider there: on three scanned persons the ratio of the jaw's width to the distance of the outer
-eye corners is 1.3, in the norms 1.15. So the depth of this pressure is added; its amount is chosen
-by these three persons.
+- The means of women and men differ as the published measures do (`assets.norms`).
+- Some points move, too: brow ridge, jaw and chin of men, and sagging skin. These amounts are chosen
+  by eye, after books of anatomy.
+
+The norms are of Europeans. So each person's mean lies at a random fraction, 0 to 1, between the
+mean of the model and the means of the norms. We assume that neither this fraction nor the shape
+depends on the skin tone.
+
+Three widths of the norms were measured with calipers, which press the skin onto the bone. So the
+norms give less than the width of the surface: their ratio of jaw width to the distance of the outer
+eye corners is 1.15, and 1.3 on three scanned persons. PRESSED corrects this. Its lengths are chosen
+so that these three persons agree.
 """
 
 from __future__ import annotations
@@ -38,14 +41,14 @@ from .lines import Lines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
-MOST = 2.5  # deviations
-PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] of calipers, both sides
+MOST = 2.5  # standard deviations; random numbers are clipped to this
+PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] that calipers press, on both sides
 YOUNG = 30.0  # [years] from which age is visible
-# Points of the left half: an anatomical name or the number of a landmark, a direction, their way in
-# ten years [mm], and the distance of a man's point from the mean of both sexes [mm]. Upward and
-# forward they are relative to the outer corner of the eye, so that a large head has no low brow.
-# Points of the jaw and the corners of the mouth have half of the difference between published
-# widths and heights.
+# Points of the left half: an anatomical name or the number of a landmark, a direction, the motion
+# in ten years [mm], and the distance of a man's point from the mean of both sexes [mm]. Upward and
+# forward motions are relative to the outer corner of the eye, so that a large head has no low brow.
+# Points of the jaw and the corners of the mouth move by half of the difference between the
+# published widths and heights.
 POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
     (24, (0, -1, 0), 0.35, 1.4), (26, (0, -1, 0), 0.35, 1.4), (24, (0, 0, 1), 0.0, 2.6),
     ("glabella", (0, 0, 1), 0.0, 3.1), ("metopion", (0, 0, -1), 0.0, 1.6),
@@ -57,7 +60,7 @@ POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] =
 
 
 class Sex(Enum):
-    """The sex whose norms a face is compared with."""
+    """A sex, which decides the norms of a face."""
 
     WOMAN = "woman"
     MAN = "man"
@@ -65,23 +68,25 @@ class Sex(Enum):
 
 @dataclass(frozen=True)
 class Identity:
-    """A face in numbers.
+    """The numbers that describe a person's face.
 
-    sex, age [years]: that its weights were drawn for.
-    hair: length relative to the cut's.
-    cut: name of its cut (`CUTS` of hair.py).
-    weights: of the modes, in deviations from the mean of people (space.py).
-    unevenness: added to weights on the left side, and subtracted on the right side.
-    covered: how much of the iris the upper lid covers [mm].
-    corners: how far above the middle of the lips' line those of the mouth lie at rest [mm].
-    brows: how far up the brows lie [mm].
-    furrows: depth of furrows of age, relative to most people of that age.
-    seen_lid: how much of the upper lid's skin is seen below its crease [mm]; below 0: none.
-    hooding: how much less of it is seen at the outer corner [mm].
-    smile: which muscles join in it.
-    larynx: how far it stands out [mm].
-    sternomastoid: how far it stands out beside the built-in head's, in a face of usual width [mm].
-    lines: those of expression; None: the built-in head's.
+    sex: decides the distribution of the weights.
+    age: decides it, too [years].
+    hair: factor on the lengths of the cut.
+    cut: name of the hair cut (`CUTS` of hair.py).
+    weights: weights of the modes [standard deviations of people].
+    unevenness: added to the weights on the left side, and subtracted on the right side.
+    covered: height of the iris that the upper lid covers [mm].
+    corners: height of the mouth's corners above the centre of the lips at rest [mm].
+    brows: how far the brows are moved up [mm].
+    furrows: depth of furrows of age, relative to most people of the same age.
+    seen_lid: height of the upper lid's visible skin below the crease [mm]; negative: none shows.
+    hooding: how much less of this skin is visible at the outer corner of the eye [mm].
+    smile: how the smile differs from the built-in one.
+    larynx: how far the larynx stands out [mm].
+    sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a face
+        of usual width.
+    lines: expression lines; None: those of the built-in head.
     """
 
     sex: Sex
@@ -102,19 +107,22 @@ class Identity:
     lines: Lines | None = None
 
     def scaled(self, share: float) -> Identity:
-        """An identity with a share of its differences: 0 is the mean of people."""
+        """Scale the shape's differences from the mean of people by a factor; 0 gives the mean."""
         kinds = (self.weights, self.unevenness)
         weights, unevenness = (tuple(share * weight for weight in kind) for kind in kinds)
         return replace(self, weights=weights, unevenness=unevenness, brows=share * self.brows)
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
-    """The norms of a sex, code -> sample."""
+    """The norms of a sex: code -> sample."""
     return {code: norm.women if sex is Sex.WOMAN else norm.men for code, norm in NORMS.items()}
 
 
 def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
-    """Deviations of measures on the surface [mm] from the means of a sex."""
+    """Z-scores of measures on the surface: code -> deviation from the mean of a sex.
+
+    measures: code -> length [mm].
+    """
     return {
         code: sample.score(measures[code] - PRESSED.get(code, 0.0))
         for code, sample in norms_of(sex).items()
@@ -123,30 +131,30 @@ def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class PersonSpace:
-    """mean + weights @ modes [mm]."""
+    """The linear model of faces: vertices = mean + sum of weights * modes."""
 
     mean: Floats64
-    """Vertices, shape (V, 3)."""
+    """Vertices of the mean face [mm], (V, 3)."""
     modes: Floats64
-    """Shape (k, V, 3)."""
+    """Displacements of the vertices by a weight of 1 [mm], (k, V, 3)."""
     slopes: Floats64
-    """Changes of the measures of NORMS with each weight [mm], shape (m, k)."""
+    """Changes of the measures of NORMS by a weight of 1 [mm], (m, k)."""
     pushed: Floats64
-    """Changes of POINTS along their directions with each weight [mm], shape (n, k)."""
+    """Motions of POINTS along their directions by a weight of 1 [mm], (n, k)."""
     anatomy: Mapping[str, int]
 
     def moved(self, weights: Floats64) -> Floats64:
-        """Displacements from the mean, shape (V, 3)."""
+        """Displacements of the vertices from the mean [mm], (V, 3), by weights (k,)."""
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
-        """Random weights for a sex and an age [years], shape (k,)."""
+        """Draw random weights, (k,), for a sex and an age [years]."""
         chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
         unit = np.eye(len(self.modes))
-        # These are higher: without this, noses stand too far forward, brows make them long, and the
-        # skin above women's lips is as high as men's.
+        # These measures count more. Without this, noses would be too long and too far forward, and
+        # women's upper lips would be as high as men's.
         firmness_of = MappingProxyType({"sn-prn": 6.0, "ft-ft": 1.5, "n-sn": 4.0, "sn-ls": 5.0})
         firmly = np.array([firmness_of.get(code, 1.0) for code in NORMS])[:, None]
         mean_firmness = 4.0  # weight of published means relative to the modes
@@ -156,7 +164,7 @@ class PersonSpace:
         decades = max(age - YOUNG, 0.0) / 10.0
         side = 1.0 if sex is Sex.MAN else -1.0
         far = np.array([decades * older + side * male for _, _, older, male in POINTS])
-        # Changes of measures in ten years, in deviations.
+        # Changes of measures in ten years [standard deviations].
         aged_measures = MappingProxyType(
             {
                 "sn-ls": 0.25,
@@ -168,22 +176,22 @@ class PersonSpace:
             }
         )
         aged = decades * np.array([aged_measures.get(code, 0.0) for code in NORMS])
-        tolerance = 0.7  # [mm] in pushed points
+        tolerance = 0.7  # [mm] of the points' motions
         pushes = asked @ (apart + aged) + self.pushed.T @ far / tolerance**2
         own = np.linalg.solve(held + self.pushed.T @ self.pushed / tolerance**2, pushes)
         mean = middle + own
-        # Deviations of the first mode (the size of the head), of the second to fourth, and of the
-        # others.
+        # Standard deviations of the first mode (the size of the head), of the second, and of the
+        # fifth and all later ones; between the second and the fifth they are interpolated.
         widths = {0: 0.6, 1: 1.1, 4: 1.2}
         width = np.interp(np.arange(len(unit)), list(widths), list(widths.values()))
-        most_deviations = 4.0  # of any random weight
+        most_deviations = 4.0  # bound of every weight
         return np.clip(mean + width * chance, -most_deviations, most_deviations)
 
     def _measured(self, sex: Sex) -> tuple[Floats64, Floats64, Floats64]:
-        """The norms as equations for weights: rows (m, k), and right sides in deviations, (m,).
+        """The norms as linear equations for weights: rows (m, k), and two right sides (m,).
 
-        The first right side leads from the mean of people to that of the norms of both sexes, the
-        second one from there to those of a sex.
+        All are in standard deviations of the norms. The first right side leads from the mean of
+        the model to the mean of both sexes in the norms, the second from there to one sex.
         """
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)
@@ -197,7 +205,7 @@ class PersonSpace:
 
 @lru_cache(maxsize=1)
 def person_space() -> PersonSpace:
-    """The space whose middle is the mean of people, read from the data that ship."""
+    """The model of faces around the mean of people, read from the data of the package."""
     head = load("head")
     arrays = read_arrays(head.beside("_modes.npz"))
     modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))
@@ -223,22 +231,23 @@ def sample_identity(
     is_even: bool = False,
     population: Population = EVERYBODY,
 ) -> Identity:
-    """The person with a number, always the same; even: left and right are alike.
+    """Draw the identity of a person's number; a number always gives the same identity.
 
-    seed: 0 or more. sex, age: replace the number's own.
+    seed: the number, 0 or more. sex, age [years]: replace drawn ones. is_even: make the left and
+    the right half alike. population: from which sex, age and cut are drawn.
     """
     random = np.random.default_rng([seed, 17])
     drawn = Sex.WOMAN if random.random() < population.women else Sex.MAN
     sex = drawn if sex is None else sex
     years = float(random.uniform(*population.ages))
     age = years if age is None else age
-    hair_lengths = 0.8, 1.2  # least and most factor on those of the cut
+    hair_lengths = 0.8, 1.2  # smallest and greatest factor on the lengths of the cut
     hair = float(random.uniform(*hair_lengths))
     cuts = population.cuts_of_women if sex is Sex.WOMAN else population.cuts_of_men
     cut = str(random.choice(list(cuts), p=_normalised(cuts)))
     weights = person_space().draw(sex, age, random)
     sides = np.clip(random.normal(size=len(weights)), -MOST, MOST)
-    unevenness = 0.1  # deviations of another person, added to the left side
+    unevenness = 0.1  # standard deviation of the weights that are added on the left side
     uneven = (0.0 if is_even else unevenness) * sides
     covered, corners, brows = np.clip(random.normal(size=3), -2.0, 2.0)
     furrows = float(np.clip(1.0 + 0.35 * random.normal(), 0.3, 1.7))

@@ -1,9 +1,9 @@
-"""The sternomastoids of a person, which run from behind the ears down to the breastbone.
+"""Raise or sink the sternomastoids of a person, the muscles from behind the ear to the breastbone.
 
-The map of fine shape has them as most people show them. Here they are raised where fat and skin
-are thin, or sunk into the neck. Cheekbones are wide beside the jaw in lean faces (Coetzee and
-others 2010, "Deciphering faces: quantifiable visual cues to weight", Perception 39:51-61). How much
-more they show in the lean and the old is chosen by eye.
+The map of fine shape shows these muscles as in most people. Lean and old persons show them more. A
+face counts as lean if its cheekbones are wide in comparison with its jaw (Coetzee and others 2010,
+"Deciphering faces: quantifiable visual cues to weight", Perception 39:51-61). How much more lean
+and old persons show is chosen by eye.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from ..smooth import smooth_step
 from .person import Person
 from .relief import Relief, relief_of
 
-# Where the built-in head's run: a height [mm], and the angle around the neck [deg], 90 in front.
+# Course of the built-in head's muscles: height [mm], and angle around the neck [deg], 90 in front.
 COURSE = np.array(
     [(-165, 60), (-150, 45), (-140, 33), (-130, 22), (-120, 13), (-110, 8), (-100, 3), (-60, -14)]
 )
 
 
 def height_of(person: Person) -> float:
-    """How far muscles stand out beside the built-in head's [mm]."""
+    """How much farther the muscles stand out than those of the built-in head [mm]."""
     measures = person.measures
-    usual_ratio = 1.27  # of the widths of cheekbones and jaw
+    usual_ratio = 1.27  # width of the cheekbones divided by the width of the jaw
     lean = measures["zy-zy"] / measures["go-go"] - usual_ratio
     return float(np.clip(person.identity.sternomastoid + 3.5 * lean, -0.7, 1.8))
 
 
 def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
-    """Both muscles in a map of this many texels each way."""
+    """Reliefs of both muscles in a map of (size, size) texels."""
     height = height_of(person)
-    tendon = max(height, 0.0)  # no skin hides what the built-in head does not show
+    tendon = max(height, 0.0)  # the built-in head shows no tendon, so it cannot sink
     return tuple(
         belly._replace(heights=height * belly.heights + tendon * front.heights)
         for belly, front in (_raised(size, side) for side in (1.0, -1.0))
@@ -45,9 +45,9 @@ def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
 
 @lru_cache(maxsize=4)
 def _raised(size: int, side: float) -> tuple[Relief, Relief]:
-    """The belly of a muscle, and its tendon with the hollow before it, both 1 mm high.
+    """Reliefs of a muscle's belly, and of its tendon with the hollow in front, both 1 mm high.
 
-    side: 1 the left, -1 the right.
+    side: 1 for the left muscle, -1 for the right one.
     """
     head = load("head")
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
@@ -56,13 +56,13 @@ def _raised(size: int, side: float) -> tuple[Relief, Relief]:
     corners[~is_near] = -1.0  # outside the map
     texels = Texels.within(corners, (size, size))
     x, y, z = texels.interpolate(head.vertices[head.faces]).T
-    axis_depth = -8.0  # [mm] of the neck
+    axis_depth = -8.0  # [mm]; z of the neck's axis
     angle = np.arctan2(z - axis_depth, side * x)
     middle = np.radians(np.interp(y, *COURSE.T))
-    off = np.hypot(x, z - axis_depth) * (angle - middle)  # [mm] before the middle
+    off = np.hypot(x, z - axis_depth) * (angle - middle)  # [mm] in front of the centre line
     belly_width = 8.5  # [mm]
     belly = np.exp(-((off / belly_width) ** 2))
-    # The tendon lies at its front edge, toward the breastbone.
+    # The tendon lies at the front edge of the belly, near the breastbone.
     tendon = 0.7 * np.exp(-(((off - 6.5) / 3.4) ** 2)) * smooth_step(-108.0, -140.0, y)
     hollow = 0.5 * np.exp(-(((off - 14.5) / 5.0) ** 2)) * smooth_step(-100.0, -125.0, y)
     inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)

@@ -1,7 +1,8 @@
-"""Clothes of persons: shirts, masks, and glasses on nose and ears.
+"""Dress persons: shirts, masks and glasses.
 
-Lenses are clear, so only the frame is drawn. It moves with the head, and does not touch the resting
-skin. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm, temple 140 mm).
+Lenses are clear, so only the frame of glasses is drawn. The frame moves with the head, and does not
+touch the resting skin. All sizes are chosen by eye, after usual frames (lens 48 mm, bridge 18 mm,
+temple 140 mm).
 """
 
 from __future__ import annotations
@@ -25,10 +26,12 @@ from .wires import Colour, Tube, beside_head, tube
 class Frame:
     """A frame of glasses.
 
-    half_width, half_height: of a lens [mm]. squareness: 2 is an ellipse; larger numbers approach a
-        rectangle.
-    thickness: of the rims [mm]. colour: sRGB. shine: 0 dull, 1 wet; more than a little breaks into
-    dashes where a rim is one or two pixels wide.
+    half_width, half_height: half the width and half the height of a lens [mm].
+    squareness: exponent of a lens' superellipse; 2 is an ellipse, more approaches a rectangle.
+    thickness: diameter of the rims [mm].
+    colour: sRGB.
+    shine: specular strength, 0 (dull) to 1 (wet). Keep it low: where rims are one or two pixels
+        wide, strong highlights break into dashes.
     """
 
     half_width: float
@@ -56,9 +59,9 @@ def wearing(
     frame: str | None = None,
     cover: str | None = None,
 ) -> Person:
-    """A person in a shirt of SHIRTS with a collar of COLLARS.
+    """Dress a person in a shirt of SHIRTS with a collar of COLLARS.
 
-    frame: one of FRAMES, or "". cover: a mask of MASKS, or "". Raises KeyError for others.
+    frame: glasses of FRAMES, or None. cover: a mask of MASKS, or None. Other names raise KeyError.
     """
     parts = [
         in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
@@ -75,15 +78,18 @@ def wearing(
 
 
 def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
-    """Glasses that fit a person; nose: points that carry them, (n, 3); None: the skin."""
+    """Make glasses that fit a person.
+
+    nose: points on which the glasses rest [mm], (n, 3); None: the skin.
+    """
     skin = person.vertices
-    farthest = 9.0 if nose is None else 20.0  # [mm] that they may move forward
+    farthest = 9.0 if nose is None else 20.0  # [mm] that the glasses may move forward
     nose = skin if nose is None else nose
     eyes = {eye.name: eye for eye in person.eyes}
     middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)
     apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
     lens = np.array([1.1 * apart, middle[1] - 3.0])
-    # Of the lens on the left; the right one is its mirror image.
+    # The left lens is computed; the right lens is its mirror image.
     cornea = middle[2] + eyes["left"].radius
     around = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
     ways = np.stack([np.cos(around), np.sin(around)], axis=-1)
@@ -111,16 +117,22 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
 
 
 def _in_front(places: Floats64, lens: Floats64, cornea: float) -> Floats64:
-    """Places (x, y) in the surface of the lenses, which is bent around and leans to the cheeks."""
-    vertex_distance = 11.0  # [mm] from the cornea
+    """Lift points (x, y) of a frame, (n, 2), to its surface, which is curved and tilted, (n, 3).
+
+    lens: centre of the left lens (x, y). cornea: z of the corneas. All lengths are in [mm].
+    """
+    vertex_distance = 11.0  # [mm] between cornea and lens
     bend = 0.0016 * np.maximum(np.abs(places[:, 0]) - 12.0, 0.0) ** 2
     lean = 0.09 * (places[:, 1] - lens[1])
     return np.column_stack([places, cornea + vertex_distance - bend + lean])
 
 
 def _depth_at(skin: Floats64, points: Floats64) -> float:
-    """How far skin stands out before points, seen from the front [mm]; below 0 for none."""
-    beside = 4.0  # [mm]
+    """Greatest distance by which skin lies in front of points in z [mm]; negative if all is behind.
+
+    skin: (V, 3). points: (n, 3).
+    """
+    beside = 4.0  # [mm] in x and y around a point, within which skin counts
     near = scipy.spatial.cKDTree(skin[:, :2]).query_ball_point(points[:, :2], beside)
     depths = [
         float(skin[found, 2].max() - point[2])
@@ -131,7 +143,7 @@ def _depth_at(skin: Floats64, points: Floats64) -> float:
 
 
 def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
-    """From the hinge along the side of the head over the ear, and down behind it, (n, 3)."""
+    """The path of a temple from the hinge over the ear and down behind it [mm], (n, 3)."""
     side = np.sign(hinge[0])
     top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
     straight = beside_head(skin, hinge, top, 0.5 * thickness)
@@ -141,7 +153,7 @@ def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) ->
 
 
 def _joined(tubes: list[Tube], frame: Frame) -> Part:
-    """One part of several tubes."""
+    """Join tubes to one part in the colour of a frame."""
     firsts = np.cumsum([0, *(len(each.points) for each in tubes[:-1])])
     faces = [each.faces + first for each, first in zip(tubes, firsts, strict=True)]
     points = np.vstack([each.points for each in tubes])

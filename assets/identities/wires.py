@@ -1,4 +1,4 @@
-"""Wires and sheets of what persons wear: frames of glasses, masks and their loops, collars."""
+"""Make wires and sheets for clothes: frames of glasses, masks, ear loops, collars."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ Colour = tuple[float, float, float]
 
 
 def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -> Floats64:
-    """A path of a wire from in front of the ear to an end above or below it, (24, 3).
+    """Lay a wire along the side of the head to an end above or below the ear; the path is (24, 3).
 
-    It does not touch the skin of the head. radius: that of the wire [mm].
+    The wire is taut, and does not touch the skin. skin: vertices [mm], (V, 3). start, end: [mm],
+    (3,). radius: radius of the wire [mm].
     """
     side = np.sign(start[0])
     share = np.linspace(0.0, 1.0, 24)[:, None]
@@ -37,7 +38,7 @@ def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -
 
 
 class Tube(NamedTuple):
-    """A wire or a sheet: points (n, 3), their normals, and triangles."""
+    """A wire or a sheet: points [mm] (n, 3), unit normals (n, 3), and triangles (m, 3)."""
 
     points: Floats64
     normals: Floats64
@@ -45,7 +46,7 @@ class Tube(NamedTuple):
 
 
 def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:
-    """A round tube along a path (n, 3)."""
+    """Make a round tube along a path (n, 3); thickness: diameter [mm]."""
     corners = 8
     if closed:
         along = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
@@ -65,7 +66,10 @@ def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:
 
 
 def sheet(outer: Floats64, inner: Floats64) -> Tube:
-    """Both sides of a sheet, rows of points (r, c, 3) down from its upper edge, and its edge."""
+    """Make a sheet with two sides and a closed edge.
+
+    outer, inner: points of both sides [mm], (r, c, 3), in rows from the upper edge down.
+    """
     numbers = np.arange(outer[..., 0].size).reshape(outer.shape[:2])
     count = numbers.size
     edge = np.concatenate([numbers[0], numbers[1:, -1], numbers[-1, -2::-1], numbers[-2:0:-1, 0]])
