@@ -1,5 +1,6 @@
 """The window, driven by real mouse and key events: sliders, skin, picture, questions."""
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 from pytest import approx
 
 from risorius.app.viewer.picture.stage import pointed_lines
@@ -48,6 +50,26 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
     assert viewer.session.values["jaw_open"] == 0.0
     assert until(viewer, lambda: moved(viewer) < 1.0)
     press_keys(viewer, "ctrl+shift+z")
+    assert viewer.session.values["jaw_open"] > 0.4
+
+
+@pytest.mark.parametrize("has_entered", [True, False])
+def test_a_drag_counts_where_it_was_when_the_window_was_busy(viewer, has_entered):
+    """While the window is busy, a bar is dragged and the mouse goes elsewhere: the bar is set.
+
+    The mouse may have been over the window when it opened, so that it was not seen to enter.
+    """
+    show_controls(viewer, "jaw open")
+    address = ctypes.cast(viewer.surface.handle, ctypes.c_void_p).value
+    if not has_entered:
+        imgui.backends.glfw_cursor_enter_callback(address, 0)
+    x, y = middle(viewer, "jaw_open")
+    bar = ("mousemove", x, y, "mousedown", 1, "mousemove", x + 20, y, "mousemove", x + 60, y)
+    try:
+        xdotool(viewer, *bar, "mouseup", 1, "mousemove", *nose(viewer))
+    finally:
+        imgui.backends.glfw_cursor_enter_callback(address, 1)
+    clear_search(viewer)
     assert viewer.session.values["jaw_open"] > 0.4
 
 

@@ -88,7 +88,7 @@ THEMES = {
 class Gui:
     """The Dear ImGui context of one window; `places` has the area of each item for tests."""
 
-    MOUSE_BUTTON_KEY = -1  # stands for a press of a mouse button
+    MOUSE_BUTTON_KEY = -1  # stands for a mouse button
 
     def __init__(self, window: Any) -> None:
         self._window = window
@@ -97,7 +97,8 @@ class Gui:
         self.double_click_time = 0.3  # [s] between two presses at most
         self.has_popup = False  # whether a menu, a list or a dialog was open at the turn's start
         self.is_reading = False  # whether a displayed text has the keyboard focus
-        self._presses: list[tuple[int, int | None]] = []  # queued events before a press, its key
+        self._presses: list[tuple[int, int | None]] = []  # queued events before a key or button
+        self._is_answering = False  # whether `turns` answers events that happened earlier
         self._last_reading = time.perf_counter()  # time of the last reading of events [s]
         self._last_answered = self._last_reading - 1.0 / 60.0  # reading before the last frame [s]
         self._largest_age = 0.0  # [s] between the last two readings: largest age of an event
@@ -180,12 +181,13 @@ class Gui:
             self._presses.append((count, None if is_modifier else key))
 
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
-        """Note the queue's length before a press, so that earlier motion is answered first.
+        """Note the queue's length before press and release: earlier motion is answered first.
 
-        A double click may take longer if the events are old.
+        A bar ignores motion that comes with the release. A double click may take longer if the
+        events are old.
         """
+        self._presses.append((self._context.input_events_queue.size(), self.MOUSE_BUTTON_KEY))
         if action == glfw.PRESS:
-            self._presses.append((self._context.input_events_queue.size(), self.MOUSE_BUTTON_KEY))
             io = imgui.get_io()
             longest = self.double_click_time + self._largest_age
             io.mouse_double_click_time = longest
@@ -205,6 +207,7 @@ class Gui:
         for (start, pressed), (end, following) in pairwise(cuts):
             for index in range(start, end):
                 queue.push_back(waiting[index])
+            self._is_answering = True
             while queue.size():
                 yield
             # A press may open an input line; later keys wait until it has the focus.
@@ -212,6 +215,7 @@ class Gui:
             for _ in range(focus_turns * is_settling):
                 if not io.want_text_input:
                     yield
+        self._is_answering = False
 
     def covers(self, area: tuple[float, float, float, float]) -> bool:
         """Whether a window of the last frame reaches into an area (left, top, width, height)."""
@@ -231,7 +235,13 @@ class Gui:
         is_visible: if False, input is answered, but nothing is drawn.
         """
         imgui.backends.opengl3_new_frame()
+        queue = self._context.input_events_queue
+        count = queue.size()
         imgui.backends.glfw_new_frame()
+        # For a mouse that was not seen to enter the window, the backend adds its present place. An
+        # earlier click would then be answered there.
+        while self._is_answering and queue.size() > count:
+            queue.pop_back()
         io = imgui.get_io()
         # The time of an event is the time of its reading, not of its answer.
         io.delta_time = max(self._last_reading - self._last_answered, 1e-6)
