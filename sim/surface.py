@@ -19,6 +19,7 @@ import scipy
 from scipy.sparse import csgraph
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
+from ..geometry.mesh_graph import path_to
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
 from .skin_graph import SkinGraph, graph_of
 
@@ -80,12 +81,8 @@ class SkinSurface:
             if np.isfinite(costs[np.arange(len(stops) - 1), stops[1:]]).all():
                 break
         way = [int(stops[0])]
-        for start, end, steps in zip(stops[:-1], stops[1:], before[:-1], strict=True):
-            back = [int(end)]
-            while back[-1] != start and steps[back[-1]] >= 0:
-                back.append(int(steps[back[-1]]))
-            forward = back[::-1]
-            way += forward[1:]
+        for end, steps in zip(stops[1:], before[:-1], strict=True):
+            way += path_to(end, steps)[1:]
         return np.array(way, dtype=np.int32)
 
     def smoother(self, extent: float) -> Callable[[Floats64], Floats64]:

@@ -62,7 +62,8 @@ def test_no_other_code_tests_the_kind_of_a_scene():
     [
         (
             "risorius",
-            {"PIL", "click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "tqdm"},
+            {"PIL", "click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "scipy"}
+            | {"tqdm"},
         ),
         ("refine", {"numpy"}),
         ("refine_gl", {"moderngl", "numpy"}),

@@ -17,6 +17,7 @@ import scipy
 
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Face
@@ -282,11 +283,7 @@ class _Skin:
         near, weight = self._near(points, out, 3 * NEAR, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
         starts, number = np.unique(first, return_inverse=True)
-        count = len(self.x)
-        ends = self._faces[:, [0, 1, 2, 1, 2, 0]].reshape(-1, 2, 3).swapaxes(1, 2).reshape(-1, 2)
-        length = np.linalg.norm(self.x[ends[:, 0]] - self.x[ends[:, 1]], axis=1)
-        edges = scipy.sparse.coo_array((length, ends.T), (count, count)).tocsr()
-        way = scipy.sparse.csgraph.dijkstra(edges, directed=False, indices=starts)
+        way = path_lengths(self.x, self._faces, starts)
         straight = np.linalg.norm(self.x[near] - self.x[first], axis=-1)
         weight *= way[number.reshape(first.shape), near] <= 1.5 * straight + 1e-9
         alone = weight.sum(axis=-1, keepdims=True) == 0.0
@@ -295,7 +292,7 @@ class _Skin:
         weight /= weight.sum(axis=-1, keepdims=True)
         rows = np.repeat(np.arange(alone.size), near.shape[-1])
         place = rows, near.ravel()
-        return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, count)).tocsr()
+        return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, len(self.x))).tocsr()
 
 
 def _lip_height(marks: Floats64) -> Floats64:

@@ -18,10 +18,11 @@ import scipy
 from risorius.assets import Part
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.eyeballs import sphere_of
-from risorius.assets.fitting.mesh_validation import pieces_of, with_seams_joined
+from risorius.assets.fitting.mesh_validation import with_seams_joined
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
+from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 

@@ -17,8 +17,8 @@ import scipy
 
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.eyeballs import is_eyeball
-from risorius.assets.fitting.mesh_validation import pieces_of
 from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.mesh_graph import pieces_of
 
 from ..errors import UserError
 

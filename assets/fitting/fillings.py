@@ -12,12 +12,12 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32
+from ...geometry.mesh_graph import pieces_of
 from ...geometry.polylines import arc_lengths
 from ...geometry.sides import sides_of
 from ..loading import load
 from ..meshes import Mesh
 from .face_place import placed
-from .mesh_validation import pieces_of
 
 # Landmarks around each opening: one chain above and one below, from corner to corner.
 OPENINGS = {

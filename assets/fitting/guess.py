@@ -21,12 +21,12 @@ import scipy
 from risorius.geometry.normals import cross_products, vertex_normals
 
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.mesh_graph import pieces_of
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..model import Head
 from .likely_face import FARTHEST_MATCH, LikelyFace
-from .mesh_validation import pieces_of
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 # Outer corners of the eyes, tip of the nose, corners of the mouth: everybody finds them, and they

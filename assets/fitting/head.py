@@ -26,6 +26,7 @@ import numpy as np
 from risorius.geometry.normals import vertex_normals
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.mesh_graph import pieces_of
 from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load
@@ -52,7 +53,6 @@ from .mesh_validation import (
     check_manifold,
     check_openings,
     notes_of_shut_eyes,
-    pieces_of,
     skin_of,
     vertices_of_pieces,
     with_seams_joined,

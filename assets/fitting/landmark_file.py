@@ -31,10 +31,11 @@ import scipy
 from risorius.schema import Within, parsed_json, read
 
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.mesh_graph import path_lengths, pieces_of
 from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..user_files import named, read_file
-from .mesh_validation import SkinPiece, path_lengths, pieces_of, with_seams_joined
+from .mesh_validation import SkinPiece, with_seams_joined
 from .warp import nearest_on
 
 COUNT = 68

@@ -13,11 +13,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import scipy
-from scipy import sparse
 from scipy.sparse import csgraph
 
 from ...geometry.arrays import Floats64, Integers, Integers32
-from ...geometry.sides import sides_of
+from ...geometry.mesh_graph import edge_graph, path_to, pieces_of
+from ...geometry.sides import edges_of, sides_of
 from ..meshes import Mesh
 
 UPPER_LIP = (60, 61, 62, 63, 64)
@@ -156,22 +156,17 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
     """Vertices of a path of edges along a line (n, 3), from end to end; None without a path."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
-    edges = np.unique(np.sort(sides_of(mesh.faces), axis=1), axis=0)
+    edges = edges_of(mesh.faces)
     points = mesh.vertices[edges]
     lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     off = _distances(points.mean(axis=1), line)
     # An edge at this distance, a share of the line's length, counts as twice as long.
     near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
-    count = len(mesh.vertices)
-    graph = sparse.csr_array((weights, edges.T), shape=(count, count))
+    graph = edge_graph(edges, weights, len(mesh.vertices))
     before = csgraph.dijkstra(graph, directed=False, indices=ends[0], return_predecessors=True)[1]
-    path = [int(ends[1])]
-    while path[-1] != ends[0]:
-        if before[path[-1]] < 0:
-            return None
-        path.append(int(before[path[-1]]))
-    return np.array(path[::-1])
+    path = path_to(ends[1], before)
+    return np.array(path) if path[0] == ends[0] else None
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
@@ -188,11 +183,8 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
         if side in first:
             links.append((first[side], triangle))
         first[side] = triangle
-    count = len(strip)
-    joined = np.array(links or [(0, 0)])
-    graph = sparse.coo_array((np.ones(len(joined)), joined.T), shape=(count, count))
-    parts, label = csgraph.connected_components(graph, directed=False)
-    return [strip[label == part] for part in range(parts)]
+    part = pieces_of(np.array(links or [(0, 0)]), len(strip))
+    return [strip[part == number] for number in range(part.max() + 1)]
 
 
 def _distances(points: Floats64, line: Floats64) -> Floats64:

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
-from scipy import sparse
 from scipy.sparse import csgraph
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32, Integers64
+from ...geometry.mesh_graph import length_graph, path_lengths, path_to, pieces_of
 from ...geometry.sides import sides_of
 from ..errors import AssetError
 from ..topology import border_vertices, unique_points
@@ -111,13 +108,6 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
             f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
             f"{MOST_TRIANGLES}: {cure} it in a modelling program"
         )
-
-
-def pieces_of(faces: Integers32, count: int) -> Integers32:
-    """The number of the connected piece of each of the `count` vertices, shape (count,)."""
-    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
-    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
-    return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
 def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
@@ -242,13 +232,10 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     """Cut away a bag behind the lips, which the built-in mouth replaces; skin: face space [mm]."""
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
-    edges = _edges(skin.vertices, skin.faces)
-    paths = csgraph.dijkstra(edges, directed=False, indices=edge, return_predecessors=True)[1]
-    ring = set(edge.tolist())
-    for number, (start, end) in enumerate(pairwise([*edge, edge[0]])):
-        while (end := paths[number, end]) >= 0 and end != start:
-            ring.add(int(end))
-    is_edge = np.isin(np.arange(len(skin.vertices)), list(ring))
+    graph = length_graph(skin.vertices, skin.faces)
+    before = csgraph.dijkstra(graph, directed=False, indices=edge, return_predecessors=True)[1]
+    ring = [path_to(end, before[k]) for k, end in enumerate(np.roll(edge, -1))]
+    is_edge = np.isin(np.arange(len(skin.vertices)), np.concatenate(ring))
     piece = pieces_of(skin.faces[~is_edge[skin.faces].any(axis=1)], len(skin.vertices))
     is_behind = ~is_edge & ~np.isin(piece, piece[skin.landmarks[: inner_lips.start]])
     deepest = skin.vertices[is_behind, 2].min(initial=np.inf)
@@ -276,19 +263,3 @@ def _is_covered(corners: Floats64, point: Floats64) -> bool:
     # Skin down to this depth [mm] behind the lids' edges covers the eye; sockets are deeper.
     cover_depth = 6.0
     return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())
-
-
-def path_lengths(
-    vertices: Floats64, faces: Integers32, starts: npt.NDArray[np.integer[Any]]
-) -> Floats64:
-    """Lengths of shortest paths along edges from each start to all vertices, shape (n, V)."""
-    edges = _edges(vertices, faces)
-    return np.asarray(csgraph.dijkstra(edges, directed=False, indices=starts))
-
-
-def _edges(vertices: Floats64, faces: Integers32) -> Any:
-    """A sparse graph of vertices with the lengths of edges [mm]."""
-    links = sides_of(faces)
-    links = np.unique(np.sort(links, axis=1), axis=0)
-    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    return sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(len(vertices),) * 2)

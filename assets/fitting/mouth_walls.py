@@ -19,6 +19,7 @@ import scipy
 from risorius.geometry.rays import exits
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.mesh_graph import pieces_of
 from ...geometry.sides import sides_of
 from ...geometry.transforms import moved_points
 from ..model import Part
@@ -129,8 +130,7 @@ def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32
     numbers = sides.astype(np.int64)
     has_other = np.isin(numbers @ [count, 1], numbers @ [1, count])
     border = sides[~has_other]
-    links = scipy.sparse.coo_matrix((np.ones(len(border)), border.T), shape=(count, count))
-    group = scipy.sparse.csgraph.connected_components(links, directed=False)[1][border[:, 0]]
+    group = pieces_of(border, count)[border[:, 0]]
     throat = mouth.points((0.0, -71.0, -10.0))  # 28 mm behind the throat
     widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of the mouth
     tips: list[Floats64] = []

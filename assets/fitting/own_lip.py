@@ -13,8 +13,9 @@ import numpy as np
 from risorius.geometry.closest import SurfacePoints
 
 from ...geometry.arrays import Flags, Floats64, Integers32
+from ...geometry.mesh_graph import path_lengths
 from ..model import Head
-from .mesh_validation import SkinPiece, path_lengths
+from .mesh_validation import SkinPiece
 from .warp import nearest_on
 
 

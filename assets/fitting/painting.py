@@ -27,7 +27,7 @@ from risorius.geometry.texels import Texels, rates
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64, Unsigned8
 from ...geometry.directions import unit_vectors
-from ...geometry.sides import sides_of
+from ...geometry.sides import edges_of
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
@@ -62,8 +62,7 @@ def spread_uv(
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
     count = len(vertices)
-    sides = sides_of(faces).astype(np.int64)
-    links = np.unique(np.sort(sides, axis=1), axis=0)
+    links = edges_of(faces)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
     # Shorter edges are stiffer. With equal stiffness, short and long edges would get equal steps in
     # the picture.

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import scipy
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from risorius.geometry.arrays import Flags, Floats32, Floats64, Integers32
+from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.read_only import make_read_only
 from risorius.geometry.sides import different_pairs, sides_of
 
@@ -18,7 +17,7 @@ from ..errors import AssetError
 from ..model import Eye, Layer, Part
 from ..topology import border_vertices, collapsed, is_manifold
 from .landmark_file import nearest_vertices
-from .mesh_validation import SkinPiece, pieces_of
+from .mesh_validation import SkinPiece
 
 MOST_SIMULATED = 20_000  # triangles; with more, motion looks the same and takes longer
 SIMPLIFIED = 15_000  # triangles of a simplified mesh
@@ -114,9 +113,7 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     corners = np.take_along_axis(corners, np.argsort(sides, axis=1), axis=1)
     is_shared = uses[edge] == 2
     both = corners[is_shared][np.argsort(edge[is_shared], kind="stable")].reshape(-1, 2, 2)
-    links = (both[:, 0].ravel(), both[:, 1].ravel())
-    graph = sparse.coo_array((np.ones(len(links[0])), links), shape=(faces.size, faces.size))
-    number = csgraph.connected_components(graph, directed=False)[1]
+    number = pieces_of(both.swapaxes(1, 2).reshape(-1, 2), faces.size)
     _, first_corner = np.unique(number, return_index=True)
     parted = number.reshape(faces.shape)
     piece = pieces_of(parted, len(first_corner))

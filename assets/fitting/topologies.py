@@ -24,6 +24,7 @@ from risorius.folders import configuration_folder
 from risorius.schema import Record, Within, parsed_json, read
 
 from ...geometry.arrays import Integers, Integers32
+from ...geometry.mesh_graph import pieces_of
 from ...geometry.sides import sides_of
 from ..data_files import read_toml
 from ..errors import AssetError
@@ -31,7 +32,7 @@ from ..loading import load
 from ..meshes import Mesh
 from ..user_files import MOST_VERTICES, named, read_file
 from .landmark_file import COUNT
-from .mesh_validation import pieces_of, vertices_of_pieces
+from .mesh_validation import vertices_of_pieces
 
 Number = Annotated[int, Within(0, MOST_VERTICES)]
 OUTER_EYE_CORNERS = (36, 45)  # landmarks

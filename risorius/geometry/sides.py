@@ -20,3 +20,8 @@ def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
     span = int(second.max(initial=0)) + 1
     keys, numbers = np.unique(first * span + second, return_inverse=True)
     return np.column_stack(np.divmod(keys, span)), numbers.astype(np.int64)
+
+
+def edges_of(faces: Integers) -> Integers64:
+    """The edges of triangles (F, 3), each once, the lower vertex first, sorted, shape (E, 2)."""
+    return different_pairs(np.sort(sides_of(faces), axis=1))[0]

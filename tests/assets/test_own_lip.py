@@ -3,8 +3,8 @@
 import numpy as np
 
 from risorius.assets.fitting import fit
-from risorius.assets.fitting.mesh_validation import path_lengths
 from risorius.assets.meshes import Mesh
+from risorius.geometry.mesh_graph import path_lengths
 
 
 def test_overlapping_lips_keep_bone_and_colour(head):
