@@ -1,4 +1,4 @@
-"""Drawing: surfaces (offscreen frame or window), camera, dynamic buffers, shading.
+"""Draw triangle meshes by OpenGL, offscreen or in a window.
 
 The package takes arrays from any source. It needs OpenGL 3.3 core and GLSL 330.
 

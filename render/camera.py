@@ -1,10 +1,11 @@
-"""The orbit camera, which turns about a point of the scene.
+"""The orbit camera, which turns around a point of the scene.
 
-A `CameraView` is a camera with a viewport; a `PlacedView` has its pixels and matrices.
+A `CameraView` is a camera with a viewport. A `PlacedView` adds the pixels and the matrices on one
+target.
 
-World: x to the subject's left (the viewer's right), y up, z toward the viewer of the front view.
-Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes have the order
-of OpenGL, and `projection * view * Vector4` reads as in a book.
+World axes: x to the subject's left (the viewer's right), y up, z toward the viewer of the front
+view. Matrices follow pyrr: float64, (4, 4), for row vectors on the left. So their bytes have the
+order of OpenGL.
 """
 
 import math
@@ -19,10 +20,10 @@ from pyrr import Matrix44
 from ..geometry.arrays import Floats64
 from .render_target import Rectangle, intersection, scaled
 
-FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
-MARGIN = 0.06  # share of the frame free on each side after framing: mouths open, brows rise
+FIELD_OF_VIEW = 25.0  # [degrees]; a portrait lens (about 80 mm on 35 mm film) keeps noses small
+MARGIN = 0.06  # free fraction of the frame on each side, because mouths open and brows rise
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
-_STEEPEST = 89.0  # [degrees] of the steepest view; beyond 90 "up" would tip over
+_STEEPEST = 89.0  # [degrees]; greatest pitch, because beyond 90 "up" would tip over
 
 # Name -> yaw and pitch [degrees]: yaw moves toward the subject's left, pitch moves up.
 VIEWS: dict[str, tuple[float, float]] = {
@@ -38,15 +39,15 @@ VIEWS: dict[str, tuple[float, float]] = {
 
 @dataclass
 class OrbitCamera:
-    """A camera on a sphere about `target`; all fields may be set.
+    """A camera on a sphere around `target`; all fields may be set.
 
-    target: the point that it looks at and turns about, shape (3,), float64.
-    distance: from the target to the eye.
-    yaw, pitch: place of the eye on the sphere [degrees]; 0, 0 = in front.
-    field_of_view: top to bottom [degrees].
-    narrowest_aspect: a frame narrower than this (width / height) shows the same width of the scene,
-    and more of its height; `framing` sets it. scene_centre, scene_radius: a sphere that holds the
-    framed scene; sets the clipping planes.
+    target: point that the camera looks at and turns around, (3,), float64.
+    distance: distance of the camera from the target [unit of the scene].
+    yaw, pitch: angles of the camera on the sphere [degrees]; 0 and 0 are in front.
+    field_of_view: vertical field of view [degrees].
+    narrowest_aspect: frames of a smaller aspect (width / height) show the same width of the scene,
+        and more of its height; `framing` sets this field.
+    scene_centre, scene_radius: a sphere around the framed scene, which sets the clipping planes.
     """
 
     target: Floats64
@@ -116,7 +117,7 @@ class OrbitCamera:
         self.distance = min(max(self.distance / factor, closest), farthest)
 
     def change_lens(self, field_of_view: float) -> None:
-        """Take another lens [degrees, top to bottom], and move so that the target keeps size."""
+        """Change the vertical field of view [degrees]; move so that the target keeps its size."""
         if not 0.0 < field_of_view < 180.0:
             raise ValueError(f"field_of_view is {field_of_view}; it must be above 0, below 180")
         now = math.tan(math.radians(0.5 * self.field_of_view))
@@ -124,7 +125,7 @@ class OrbitCamera:
         self.field_of_view = field_of_view
 
     def axes(self) -> tuple[Floats64, Floats64, Floats64]:
-        """Unit vectors of the frame in the world: right, up, and from the target to the eye."""
+        """Unit vectors in the world, each (3,): right, up, and from the target to the camera."""
         yaw = math.radians(self.yaw)
         pitch = math.radians(self.pitch)
         sine = math.sin(yaw)
@@ -137,11 +138,11 @@ class OrbitCamera:
 
     @property
     def eye(self) -> Floats64:
-        """Place of the camera, shape (3,), float64."""
+        """Position of the camera in the world, (3,), float64."""
         return self.target + self.distance * self.axes()[2]
 
     def view_matrix(self) -> Matrix44:
-        """World -> camera (x right, y up, looking along -z)."""
+        """The matrix from the world to view space (x right, y up, z to the viewer)."""
         axes = np.stack(self.axes())
         matrix = np.eye(4)
         matrix[:3, :3] = axes.T
@@ -149,31 +150,31 @@ class OrbitCamera:
         return Matrix44(matrix)
 
     def projection_matrix(self, aspect: float) -> Matrix44:
-        """Camera -> clip space, for a frame of this aspect, width / height."""
+        """The matrix from view space to clip space; aspect: width / height of the frame."""
         near, far = self._depth_range()
         degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
     def focal(self, aspect: float, height: float) -> float:
-        """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
+        """Focal length [pixels] for a frame of some aspect and height [pixels]."""
         return 0.5 * height / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
-        """Half the frame's height at distance 1."""
+        """Half the height of the frame at distance 1 from the camera."""
         if not aspect > 0.0:
             raise ValueError(f"aspect is {aspect}; it must be positive (width / height)")
         half_height = math.tan(math.radians(0.5 * self.field_of_view))
         return half_height * max(1.0, self.narrowest_aspect / aspect)
 
     def _depth_range(self) -> tuple[float, float]:
-        """Clipping planes just around the scene, for the best use of the depth buffer."""
+        """Distances of the clipping planes, close to the scene for the most precise depths."""
         depth = float(np.dot(self.eye - self.scene_centre, self.axes()[2]))
         reach = 3.2 * self.scene_radius  # shoulders lie outside the framed scene
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 
     def fit(self, points: npt.NDArray[Any], margin: float = MARGIN) -> None:
-        """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
+        """Centre `points`, (n, 3), in the frame, and move as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
         for _ in range(8):  # repeated, because perspective makes one round inexact
@@ -193,11 +194,12 @@ class OrbitCamera:
 
 @dataclass(frozen=True, eq=False)
 class CameraView:
-    """A camera's state at the time of this object's creation, and the viewport that it looks into.
+    """A copy of a camera, and the viewport into which it draws.
 
-    viewport: x, y, width, height [pixels of the surface] from the lower left corner; the picture
-    has its aspect; None: all of the surface. clip: the part of the surface that is drawn; None: all
-    of the viewport. With two clips, one image shows two meshes.
+    viewport: x, y, width, height from the lower left corner [pixels of the surface]; None: the
+        whole surface.
+    clip: the part of the surface that is drawn; None: the whole viewport. Two views with different
+        clips show two meshes in one picture.
     """
 
     camera: OrbitCamera
@@ -209,10 +211,11 @@ class CameraView:
 
 
 class PlacedView:
-    """Pixels and matrices, for row vectors, of a view on one target.
+    """The pixels and the matrices of a view on one target.
 
-    viewport, clip: of the target [pixels].
-    world_to_view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
+    viewport, clip: rectangles of the target [pixels].
+    world_to_view: matrix from the world to view space, for row vectors, (4, 4), float64.
+    projection: matrix from view space to clip space, for row vectors, (4, 4), float64.
     """
 
     def __init__(self, view: CameraView, size: tuple[int, int], scale: float = 1.0) -> None:
@@ -233,14 +236,14 @@ class PlacedView:
 
     @cached_property
     def world_to_clip(self) -> Floats64:
-        """World -> clip space, shape (4, 4)."""
+        """The matrix from the world to clip space, for row vectors, (4, 4), float64."""
         return self.world_to_view @ self.projection
 
     def covered_pixels(self, corners: Floats64, padding: float = 2.0) -> Rectangle:
-        """Return the pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
+        """Return a rectangle around the hull of `corners`, (n, 3), within the clip.
 
-        This is the whole clip if a corner is not finite or lies behind the eye; width or height are
-        0 if the hull is not visible.
+        padding: added on each side [pixels]. The rectangle is the whole clip if a corner is not
+        finite or lies behind the camera. Its width or height is 0 if the hull is not visible.
         """
         matrix = self.world_to_clip
         with np.errstate(over="ignore", invalid="ignore"):
@@ -256,7 +259,7 @@ class PlacedView:
 
     @cached_property
     def depth_range(self) -> tuple[float, float]:
-        """First depth of the scene on the target, 0..1, and 1 / the range of its depths."""
+        """Smallest depth of the scene on the target, 0 to 1, and the reciprocal of its range."""
         camera = self.camera
         middle = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
         reach = 1.3 * camera.scene_radius  # a face moves beyond its rest pose
@@ -269,10 +272,10 @@ class PlacedView:
 
     @cached_property
     def depth_tolerance(self) -> tuple[float, float]:
-        """Return the largest depth difference on one surface, as a linear function of depth.
+        """Return the greatest depth difference within one surface, as a linear function of depth.
 
-        It returns the value at depth 0 and the slope, relative to the depth range: a part of a
-        pixel's width at this depth.
+        Returns its value at depth 0, and its slope. Depths are fractions of `depth_range`. The
+        difference corresponds to 0.7 of a pixel's width at this depth.
         """
         share = 0.7 / self.camera.focal(self.viewport[2] / self.viewport[3], self.viewport[3])
         least, scale = self.depth_range

@@ -1,8 +1,8 @@
-"""The picture of a scene in a window, under its panels.
+"""Compose the picture of a window from a scene and panels.
 
 Software OpenGL takes time for every sample, so a moving scene may be drawn with fewer samples and
 pixels (`Detail`). Then edges.py smooths its edges, and this module enlarges it. The pixels of the
-scene are kept: when only a panel changes, they are copied instead of drawn again.
+scene are kept: if only a panel changes, they are copied instead of drawn again.
 """
 
 from dataclasses import dataclass
@@ -19,21 +19,25 @@ _UNIT = 4  # texture unit while enlarging
 
 @dataclass(frozen=True)
 class Detail:
-    """Resolution of a window's scene.
+    """The resolution of the scene in a window.
 
-    samples: per pixel, 0 = none. scale: pixels of the scene per pixel of the window, 0..1.
+    samples: number of samples per pixel; 0: edges are not smoothed by samples.
+    scale: pixels of the scene per pixel of the window, 0 to 1.
     """
 
     samples: int = 4
     scale: float = 1.0
 
     def scaled(self, size: tuple[int, int]) -> tuple[int, int]:
-        """The scene's size in a window of `size` pixels."""
+        """The scene's width and height in a window of `size` pixels."""
         return max(round(self.scale * size[0]), 1), max(round(self.scale * size[1]), 1)
 
 
 class Compositor:
-    """A frame of the window's size, separate from the scene's target; panels are drawn on it."""
+    """A frame of the window's size, into which the scene is copied and panels are drawn.
+
+    frame: the framebuffer.
+    """
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
@@ -51,7 +55,10 @@ class Compositor:
         area: Rectangle | None,
         target: moderngl.Framebuffer | None = None,
     ) -> None:
-        """Copy the scene into an area (None: all) of this frame or of `target`, then bound."""
+        """Copy the scene into an area of this frame or of `target`, and bind the framebuffer.
+
+        area: None copies the whole scene.
+        """
         gl = self._gl
         target = target or self.frame
         frame = scene.frame
@@ -74,17 +81,17 @@ class Compositor:
         gl.scissor = None
 
     def _smoother_of(self, size: tuple[int, int]) -> EdgeSmoother:
-        """The smoother of scenes of a size; the last one is kept."""
+        """The smoother for scenes of some size; the last smoother is kept."""
         if self._smoother is None or self._smoother.size != size:
             self._smoother = EdgeSmoother(self._gl, size)
         return self._smoother
 
     def _in_scene(self, scene: RenderTarget, area: Rectangle | None) -> Rectangle | None:
-        """An area of this frame, in pixels of the scene."""
+        """Convert an area of this frame to pixels of the scene."""
         return None if area is None else scaled(area, scene.size[0] / self.size[0])
 
     def lay(self, x: int, y: int, image: Any) -> None:
-        """Draw a label into the bound framebuffer; see `WindowSurface.labels`."""
+        """Draw a label (h, w, 4) into the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
         gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
@@ -96,7 +103,7 @@ class Compositor:
         gl.viewport = 0, 0, *self.size
 
     def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
-        """Copy everything except an area to a framebuffer of the same size."""
+        """Copy this frame, except the rectangle `around`, to a framebuffer of the same size."""
         width, height = self.size
         left, bottom, right, top = *around[:2], around[0] + around[2], around[1] + around[3]
         for rectangle in (
@@ -106,7 +113,7 @@ class Compositor:
             (left, top, right - left, height - top),
         ):
             if rectangle[2] > 0 and rectangle[3] > 0:
-                self._gl.scissor = rectangle  # a scissor would cut the copy
+                self._gl.scissor = rectangle  # limits the copy
                 self._gl.copy_framebuffer(target, self.frame)
         self._gl.scissor = None
 

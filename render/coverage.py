@@ -1,4 +1,4 @@
-"""Coverage: the surface seen by each sample of a pixel, drawn without lighting."""
+"""Draw coverage: the surface that each sample of a pixel sees, without lighting."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,15 +12,18 @@ from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
 from .translucency import CUT_WIDTH, NOWHERE, SUNK_DEPTH, set_cut
 
-Numbers = tuple[float, float, float]  # numbers of a surface, see surface_number.glsl
+Numbers = tuple[float, float, float]  # the uniform `numbers` of surface_number.glsl
 SKIN_NUMBERS = 190.0, 63.0, 254.0
 
 
 class Drawn(NamedTuple):
     """The surfaces of a frame that have been drawn in a view.
 
-    skin: None if it was not drawn yet. cut: of an opened skin, else None. has_triangles: whether
-    each triangle of the skin is a surface of its own.
+    skin: None if the skin has not been drawn yet.
+    cut: plane that cuts an opened skin; None for a closed skin.
+    is_opened: whether the skin is translucent.
+    has_triangles: whether each triangle of the skin counts as a separate surface.
+    has_normals: whether surface numbers of the skin depend on normals, as in per-pixel shading.
     """
 
     skin: Skin | None
@@ -32,7 +35,10 @@ class Drawn(NamedTuple):
 
 
 class Coverage:
-    """Surface numbers and depths of several samples per pixel of a target."""
+    """Surface numbers and depths of several samples per pixel of a target.
+
+    numbers, depths: multisample textures.
+    """
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self._gl = gl
@@ -57,7 +63,7 @@ class Coverage:
                 self._draw_part(each, drawn.cut if each.part.lies_beneath else None, view)
 
     def _draw_skin(self, drawn: Drawn, skin: Skin, view: PlacedView) -> None:
-        """Draw the skin, both sides."""
+        """Draw both sides of the skin."""
         defines = ["TRANSLUCENT"] * drawn.is_opened + ["TRIANGLES"] * drawn.has_triangles
         defines += ["PIXEL"] * drawn.has_normals
         program = self._program(view, SKIN_NUMBERS, *defines)
@@ -79,7 +85,7 @@ class Coverage:
         placed.buffers.draw(program)
 
     def _program(self, view: PlacedView, numbers: Numbers, *defines: str) -> moderngl.Program:
-        """Return the program for a kind of surfaces, with the uniforms of these numbers set."""
+        """Return the program with some defines, and set its uniforms."""
         if defines not in self._programs:
             self._programs[defines] = compile_program(self._gl, "coverage.glsl", *defines)
         program = self._programs[defines]

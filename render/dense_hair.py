@@ -1,4 +1,4 @@
-"""Depths of dense hair, drawn first so that hidden skin is not shaded."""
+"""Draw the depths of dense hair first, so that skin below it is not shaded."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from .programs import write_uniform
 from .render_target import RenderTarget
 from .translucency import changing_depth_alone
 
-FARTHER = 1.0, 4.0  # as glPolygonOffset takes it: of a pixel's slope, and least steps of depth
+FARTHER = 1.0, 4.0  # factor and units of glPolygonOffset
 
 
 def hide_below(
@@ -19,8 +19,8 @@ def hide_below(
     target: RenderTarget,
     program: moderngl.Program,
 ) -> None:
-    """Draw the depth of dense hair among parts, by shadow.glsl with SHELLS."""
-    # It is so near to the lowest layer of hair that rounding would also hide parts of this layer.
+    """Draw the depths of dense hair among parts; program: shadow.glsl with the define SHELLS."""
+    # These depths equal those of the lowest layer of hair, so rounding would hide parts of it.
     program.ctx.polygon_offset = FARTHER
     for each in parts:
         covered = view.covered_pixels(each.corners)

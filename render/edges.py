@@ -1,7 +1,7 @@
-"""Smoothing of edges, in separate passes, for a scene with one sample per pixel.
+"""Smooth the edges of a scene with one sample per pixel.
 
-A first pass finds the edges, a second smooths them. On software OpenGL this takes half the time of
-a single pass: the second pass skips pixels without edges by an early depth test.
+A first pass finds the edges, and a second pass smooths them. On software OpenGL both passes take
+half the time of a single pass, because the early depth test skips pixels without edges.
 """
 
 import moderngl
@@ -13,9 +13,9 @@ _UNIT = 4  # texture unit of the scene
 
 
 class EdgeSmoother:
-    """A copy of a scene of one size, with smooth edges.
+    """A copy of a scene with smooth edges, for scenes of one size.
 
-    colour: the copy. frame: a framebuffer that has it.
+    colour: texture with the copy. frame: framebuffer of this texture.
     """
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
@@ -31,13 +31,16 @@ class EdgeSmoother:
         self._smoothed: tuple[RenderTarget, int, Rectangle | None] | None = None
 
     def _pass(self, *defines: str) -> moderngl.VertexArray:
-        """A pass over the scene."""
+        """Make a pass over all pixels of the scene with some defines."""
         program = compile_program(self._gl, "edges.glsl", *defines)
         program["scene"] = _UNIT
         return self._gl.vertex_array(program, [])
 
     def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
-        """Copy a scene, and smooth edges in an area (None: all); repeated calls do nothing."""
+        """Copy a scene, and smooth its edges in an area; None smooths all.
+
+        A second call for the same frame and area does nothing.
+        """
         frame = scene, scene.frame_number, area
         if self._smoothed == frame:
             return

@@ -1,8 +1,8 @@
-"""The only error class of this package, and remedies for each way in which OpenGL fails to start.
+"""The error class of this package, and remedies for the ways in which OpenGL fails to start.
 
 moderngl and glcontext raise plain `Exception`s with short texts; GLFW issues Python warnings and
-returns NULL. `diagnose` turns such a text into one line with a remedy. The texts are those of
-moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5 on Linux, provoked one by one.
+returns NULL. `diagnose` turns such a text into one line with a remedy. We provoked each text on
+Linux, with moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5.
 """
 
 import os
@@ -10,7 +10,7 @@ import re
 
 OFFSCREEN = "offscreen OpenGL"
 
-# raw text -> (reason, remedy); the first matching pattern counts.
+# Triples: pattern of the raw text, reason, remedy; the first matching pattern counts.
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (r"invalid literal", "a GLCONTEXT_ variable is not a whole number", "unset it"),
     (r"glfw'|GLFW3", "GLFW is not installed, or broken", "pip install '.[window]' in the checkout"),
@@ -33,11 +33,11 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
 
 
 class GLError(RuntimeError):
-    """OpenGL is missing, too old or refuses; one line has attempt, reason, raw text and remedy."""
+    """OpenGL is missing, too old, or failed; the message has attempt, reason and remedy."""
 
 
 def diagnose(attempt: str, raw: object) -> GLError:
-    """Return the GLError for a failed attempt; raw: the message of the library."""
+    """Return the GLError for a failed attempt; raw: the library's message."""
     text = " ".join(str(raw).split()) or "no reason given"
     set_by_hand = [name for name in os.environ if name.startswith("GLCONTEXT_")]
     unset = ""

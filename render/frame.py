@@ -1,8 +1,8 @@
-"""A picture as a value: view, style, mesh, parts and lines; `Renderer.draw` draws it.
+"""All inputs of a picture as a value: view, style, mesh, parts and lines.
 
-A frame contains all inputs of its picture, so the same frame always gives the same picture. Its
-parts keep the shape that they had when the frame was made. Its mesh lies in the buffers of a
-stream, so a frame can be drawn until the stream is filled again.
+`Renderer.draw` draws frames; the same frame always gives the same picture. Parts keep the shape
+that they had when the frame was made. The mesh lies in the buffers of a stream, so a frame can be
+drawn until the stream is filled again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,20 +17,24 @@ from .stream import MeshBuffers, UploadedMesh
 from .style import Style
 from .texture import BumpMap, Texture
 
-Plane = tuple[float, float, float, float]  # (a, b, c, d): a x + b y + c z + d > 0 lies in front
+Plane = tuple[float, float, float, float]  # (a, b, c, d); a x + b y + c z + d > 0 is in front
 
 
 class DrawnPart(Protocol):
     """The attributes of a part that the renderer reads.
 
-    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid returns
-    new arrays of the same shape whenever its form has changed. faces: counter-clockwise seen from
-    outside, shape (m, 3), int32; back faces are not drawn. colours: sRGB 0..1, shape (n, 3),
-    float32. bone: the bone whose transform moves the part. shine: 0 dull, 1 wet. is_enclosed:
-    whether it lies within another surface, where no light from behind arrives. strand_radius: half
-    the thickness of its strands; 0 for a solid part. striation: place of each vertex across and
-    along fibres [mm], (n, 2), or None. Shells have further columns, (n, 6): the vector from root to
-    tip [mm], at 0.6 of which the vertices lie, and the density.
+    - name: name in messages.
+    - vertices, normals: (n, 3), float32. A deformable part returns new arrays of the same shape
+      after each change.
+    - faces: vertex numbers, counter-clockwise from outside, (m, 3), int32. Back faces do not show.
+    - colours: sRGB, 0 to 1, (n, 3), float32.
+    - bone: name of the bone whose transform moves the part.
+    - shine: specular strength, 0 (dull) to 1 (wet).
+    - is_enclosed: whether another surface encloses the part, so that no light arrives from behind.
+    - strand_radius: radius of the strands [unit of the scene]; 0 for a solid part.
+    - striation: coordinates of the vertices across and along fibres [mm], (n, 2), or None. Shells
+      have shape (n, 6), with further columns: the vector from root to tip [mm], and the density.
+      The vertices of shells lie at 0.6 of this vector.
     """
 
     @property
@@ -57,13 +61,14 @@ class DrawnPart(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PlacedPart:
-    """A part with the place and shape that it has when this object is created.
+    """A part at a position, with the shape that it has when this object is made.
 
-    transform: from the part to the world, for column vectors, shape (4, 4).
-    lies_beneath: whether the part belongs under the skin: closed skin hides it, even where the part
-    comes out. throws_shadow: whether it throws a shadow on other parts and on the skin. opening:
-    the opening through which light reaches it; None: light comes from all around. vertices,
-    normals, colours: those of the part.
+    transform: matrix from the part to the world, for column vectors, (4, 4).
+    lies_beneath: whether the part lies under the skin. Closed skin then hides the part, even where
+        the part comes out of the skin.
+    throws_shadow: whether the part throws a shadow on other parts and on the skin.
+    opening: opening through which light reaches the part; None: light comes from all around.
+    vertices, normals, colours: arrays of the part.
     """
 
     part: DrawnPart
@@ -89,7 +94,7 @@ class PlacedPart:
         throws_shadow: bool = False,
         opening: Opening | None = None,
     ) -> Self:
-        """A part in the place given by the matrix of its bone; ValueError without a matrix."""
+        """Place a part by the matrix of its bone; if the bone has no matrix, raises ValueError."""
         if part.bone not in transforms:
             raise ValueError(
                 f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
@@ -100,11 +105,11 @@ class PlacedPart:
 
 @dataclass(frozen=True, eq=False)
 class SkinMaps:
-    """The images on a skin.
+    """The textures of a skin.
 
-    texture: the albedo of its front side, unless the style is not textured, and its fine shape.
-    bumps: furrows, as far as style and uploaded amounts show them; per-pixel shading alone has
-        them.
+    texture: albedo of the front side, and fine shape. An untextured style hides the albedo.
+    bumps: furrows, which only per-pixel shading shows. Their strength is a product of the style's
+        `bumps` and of amounts per vertex.
     """
 
     texture: Texture | None = None
@@ -117,14 +122,15 @@ NO_MAPS = SkinMaps()
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """The mesh of a frame: the last upload of a stream, with its maps and colours.
+    """The mesh of a frame: the last upload of a stream, with maps and colours.
 
-    maps: they need a stream of 8 columns or more, ValueError else.
-    fading: points around the part of the mesh that fades by columns 17 and 18, (n, 3); None:
-    nothing fades. They need a stream of 18 columns, ValueError else. mouth: the rim of its lips,
-    see `Opening.rim`: through the lips the inner side of a neck shows that is hidden where it
-    fades; None: there are no lips. values: the number that colours each triangle, see `ColourBy`,
-    shape (M,), uint8; needed unless the style has `ColourBy.NONE`.
+    maps: textures; they need a stream of at least 8 columns, else ValueError is raised.
+    values: a number for each triangle that decides its colour (see `ColourBy`), (M,), uint8; needed
+        unless the style has `ColourBy.NONE`.
+    fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. Columns 17
+        and 18 of the stream say how; a stream with fewer columns raises ValueError.
+    mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. A fading neck hides its
+        inner side, but through the lips this side stays visible.
     """
 
     stream: MeshBuffers
@@ -151,7 +157,7 @@ class Skin:
             )
 
     def shown_maps(self, style: Style) -> dict[BumpMap, float]:
-        """Map of fine shape that tilts normals in a style, and the strength of each map, 0 to 1."""
+        """The maps that tilt normals in a style, each with its strength, 0 to 1."""
         shown = {}
         if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
             shown[self.maps.bumps] = style.bumps
@@ -165,8 +171,8 @@ class Skin:
 class Frame:
     """The content of one viewport.
 
-    style: shading and colours, with the background and the opacity of the skin.
-    cut: in front of it a translucent skin is opaque.
+    style: shading, colours, background, and opacity of the skin.
+    cut: plane; in front of it a translucent skin is opaque.
     overlays: lines that are drawn over everything.
     """
 
@@ -179,5 +185,5 @@ class Frame:
 
     @property
     def is_opened(self) -> bool:
-        """Whether parts are seen through the skin."""
+        """Whether the skin is translucent and shows parts behind it."""
         return self.skin is not None and self.style.opacity < 1.0

@@ -1,8 +1,8 @@
-"""G-buffer: distance, normal and triangle of the surface in each pixel of a picture.
+"""Draw the G-buffer: depth, normal and triangle of the surface in each pixel of a picture.
 
-It is drawn from the same vertex buffers and matrices as the colours, but with one sample in the
-middle of each pixel, so that no number is a mean of two surfaces. Source: Saito and Takahashi 1990,
-"Comprehensible rendering of 3-D shapes" (the G-buffer).
+It uses the vertex buffers and matrices of the colours, but one sample at the centre of each pixel.
+So no value is a mean of two surfaces. Source: Saito and Takahashi 1990, "Comprehensible rendering
+of 3-D shapes".
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,23 +20,25 @@ from .texture import BumpMap
 
 
 class Geometry(NamedTuple):
-    """One picture, top row first; empty pixels have 0 in all numbers, but -1 in `triangle`.
+    """The G-buffer of a picture, top row first.
 
-    Axes are those of pictures: x right, y down, z away from the camera.
+    Empty pixels have -1 in `triangle`, and 0 in all other arrays. Axes are those of a camera in
+    computer vision: x right, y down, z away from the camera.
     """
 
     depth: Floats32
     """Distance along the camera's axis, not along the ray [unit of the scene], (H, W)."""
     normal: Floats32
-    """Interpolated unit normals of the visible side, shape (H, W, 3)."""
+    """Interpolated unit normals of the visible side, (H, W, 3)."""
     triangle: Integers32
-    """Number of the triangle: triangles of the skin come first, then of each part without strands,
-    (H, W).
+    """Number of the triangle, (H, W); triangles of the skin come first, then those of each part.
+
+    Parts with strands are left out.
     """
     is_inside: Flags
-    """Whether a pixel shows the back of a triangle of the skin, shape (H, W)."""
+    """Whether a pixel shows the back of a triangle of the skin, (H, W)."""
     uv: Floats32
-    """Texture coordinates; 0 on parts, and in streams without any, shape (H, W, 2)."""
+    """Texture coordinates, (H, W, 2); 0 on parts, and in streams without texture coordinates."""
 
 
 class GeometryBuffer:
@@ -45,12 +47,12 @@ class GeometryBuffer:
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
         self._gl = gl
-        self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # programs, by their defines
+        self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # the keys are defines
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
     def draw(self, frame: Frame, parts: Sequence[PlacedBuffers], view: PlacedView) -> Geometry:
-        """Draw the numbers of a frame's skin and of the given parts; see `Renderer.read`."""
+        """Draw the G-buffer of a frame's skin and of the given parts; see `Renderer.read`."""
         gl = self._gl
         program = self._program_of({})
         self._target.use()
@@ -76,7 +78,7 @@ class GeometryBuffer:
         return self._read()
 
     def _program_of(self, maps: Mapping[BumpMap, float]) -> moderngl.Program:
-        """Return the program for a mesh with these maps, with its uniforms set."""
+        """Return the program for a mesh with some maps, and set its uniforms."""
         names = tuple(each.define for each in maps)
         if names not in self._programs:
             self._programs[names] = compile_program(self._gl, "geometry.glsl", *names)

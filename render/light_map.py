@@ -1,13 +1,13 @@
-"""Light of an environment map: a key light that throws shadows, and smooth light from all around.
+"""Light a scene by an environment map: a key light with shadows, and smooth light from all around.
 
-The brightest place of the map becomes the key light, with its excess over its surroundings. All
-other light is stored as spherical harmonics up to the second order, nine numbers for each colour,
-which represent the light on a matte surface to a few per cent. The light moves with the camera,
-like the lamps of lights.py: the middle of the map lies behind the head, its left and right ends
-behind the viewer.
+The key light comes from the brightest region of the map. It has the light by which this region
+exceeds its surroundings. All other light is stored as spherical harmonics up to the second order:
+nine coefficients per colour, which give the light on a diffuse surface with an error of a few per
+cent. The light moves with the camera, like the lamps of lights.py. The centre of the map lies
+behind the head, the left and right ends behind the viewer.
 
-Source: Ramamoorthi, Hanrahan 2001, "An efficient representation for irradiance environment maps",
-for the nine numbers. The choice of a key is ours.
+Source of the nine coefficients: Ramamoorthi, Hanrahan 2001, "An efficient representation for
+irradiance environment maps". The choice of a key light is ours.
 """
 
 from collections.abc import Mapping
@@ -23,22 +23,22 @@ from .style import Light, MapBackground
 
 @dataclass(frozen=True, eq=False)
 class LightMap:
-    """An environment map: linear light in any unit, shape (H, W, 3), W = 2 H.
+    """An environment map: linear light in any unit, (H, W, 3), with W = 2 H.
 
-    Row 0 is above. Columns run from behind the viewer over the left to behind the head, in the
-    middle of the map, and over the right back to behind the viewer.
+    Row 0 is the zenith. Columns run from behind the viewer over the viewer's left to behind the
+    head, at the centre of the map, and over the right back to behind the viewer.
     """
 
     radiance: Floats64
 
     def light(self, turn: float = 0.0) -> Light:
-        """Return the exposed light of the map, turned to the viewer's right by an angle [deg]."""
+        """Return the exposed light of the map; turn: rotation to the viewer's right [deg]."""
         return self.exposed(turn)[0]
 
     def exposed(self, turn: float) -> tuple[Light, float]:
-        """Return the result of `light`, and the exposure factor on the radiance."""
+        """Return the result of `light`, and the exposure: the factor on the radiance."""
         rows, columns = self.radiance.shape[:2]
-        every = max(rows // 32, 1)  # steps of 6 degrees are fine enough for light
+        every = max(rows // 32, 1)  # a resolution of 6 degrees suffices for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]
         blocks = radiance.reshape(rows // every, every, columns // every, every, 3)
         radiance = blocks.mean(axis=(1, 3))
@@ -52,7 +52,7 @@ class LightMap:
         around = np.array(factors)[:, None] * moments
         front = np.maximum(away[:, 2], 0.0) * solid
         lit = _harmonics(away) @ around + np.maximum(away @ to_key, 0.0)[:, None] * key
-        usual_light = 0.72  # mean of the studio over surfaces that face the viewer
+        usual_light = 0.72  # mean light of the lamp "studio" on surfaces that face the viewer
         scale = usual_light / max(float(front @ _luminance(lit) / front.sum()), 1e-9)
         return (
             Light(
@@ -67,24 +67,24 @@ class LightMap:
         )
 
     def background(self, turn: float = 0.0, exposure: float | None = None) -> MapBackground:
-        """Return the background of a scene lit by this map: out of focus, with the same exposure.
+        """Return this map, out of focus and exposed, as the background of a scene that it lights.
 
-        turn: as in `light`. exposure: the factor from `exposed`; None: it is computed again.
+        turn: as in `light`. exposure: factor of `exposed`; None: it is computed again.
         """
         if exposure is None:
             exposure = self.exposed(turn)[1]
         rows, columns = self.radiance.shape[:2]
-        out_of_focus = 3.0 * rows / 180.0  # 3 degrees, in texels
+        out_of_focus = 3.0 * rows / 180.0  # 3 degrees in [texels]
         up = np.subtract.outer(np.arange(rows), np.arange(rows))
         around = np.subtract.outer(np.arange(columns), np.arange(columns))
-        around = (around + columns // 2) % columns - columns // 2  # the ends of a row meet
+        around = (around + columns // 2) % columns - columns // 2  # rows are periodic
         softened = np.tensordot(_gaussian(up, out_of_focus), self.radiance, 1)
         softened = _gaussian(around, out_of_focus) @ softened
         return MapBackground(exposure * softened, turn)
 
 
 def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
-    """Directions of the texels of a map, x right, y up, z to the viewer: unit vectors (H, W, 3)."""
+    """Directions of a map's texels: unit vectors (H, W, 3), x right, y up, z to the viewer."""
     elevation = np.pi * (0.5 - (np.arange(rows) + 0.5) / rows)[:, None]
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5) + np.radians(turn)
     across = np.cos(elevation)
@@ -93,22 +93,25 @@ def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
 
 
 def _solid_angles(rows: int, columns: int) -> Floats64:
-    """Solid angle of a texel in each row, shape (H,)."""
+    """Solid angle of a texel in each row [sr], (H,)."""
     edges = np.sin(np.linspace(0.5 * np.pi, -0.5 * np.pi, rows + 1))
     return np.asarray(-np.diff(edges) * 2.0 * np.pi / columns)
 
 
 def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats64, Floats64]:
-    """The direction of the key (3,), and its part of the light of each texel (n, 3).
+    """The direction of the key light (3,), and the part of each texel's light in it (n, 3).
 
-    Light from in front of the face is preferred: a sun behind the head stays in the smooth light.
+    Light from the front is preferred: a sun behind the head is left to the smooth light.
+
+    radiance: light of the texels, (n, 3). away: directions of the texels, (n, 3). solid: solid
+    angles of the texels [sr], (n,).
     """
     lightness = _luminance(radiance) * solid
-    tried = away[::7]  # a sample of all texels: the cost grows with the square
+    tried = away[::7]  # every seventh texel, because the time grows with the square of the number
     square = np.maximum(tried @ away.T, 0.0) ** 2
     eighth = (square**2) ** 2
-    # The 40th power of the cosine is a lobe of some 15 degrees; repeated squares are faster than a
-    # power.
+    # The 40th power of the cosine is a lobe of about 15 degrees. Repeated squaring is faster than
+    # a power.
     gathered = (eighth**2) ** 2 * eighth @ lightness
     middle = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
     cosine = away @ middle
@@ -122,7 +125,7 @@ def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats
 
 
 def _harmonics(normals: Floats64) -> Floats64:
-    """Return the polynomials of lighting.glsl at normals (n, 3), shape (n, 9)."""
+    """Return the nine polynomials of lighting.glsl, (n, 9), at unit normals (n, 3)."""
     x, y, z = normals.T
     second = [x * y, y * z, x * z, 3.0 * z * z - 1.0, x * x - y * y]
     return np.stack([np.ones_like(x), y, z, x, *second], axis=-1)
@@ -138,7 +141,7 @@ def _three(values: Floats64) -> tuple[float, float, float]:
 
 
 def _clouds() -> Floats64:
-    """An overcast sky (CIE 1955: three times as bright above as at the horizon), and a sun."""
+    """An overcast sky and a sun; the zenith is three times as bright as the horizon (CIE 1955)."""
     away = directions(64, 128)
     height = away[..., 1]
     sky = (1.0 + 2.0 * np.maximum(height, 0.0)) / 3.0
@@ -148,7 +151,7 @@ def _clouds() -> Floats64:
 
 
 def _room() -> Floats64:
-    """A room with a window at the viewer's left, a lamp at the right, and light walls."""
+    """A room with light walls, a window at the viewer's left, and a lamp at the right."""
     away = directions(64, 128)
     height = away[..., 1:2]
     walls = np.where(height > 0.6, [0.24, 0.23, 0.21], [0.17, 0.155, 0.135])
@@ -161,7 +164,7 @@ def _room() -> Floats64:
 
 
 def _street() -> Floats64:
-    """A street at evening: a blue sky, a lamp above, windows of shops, two signs."""
+    """A street in the evening: a blue sky, a lamp above, shop windows, and two signs."""
     away = directions(64, 128)
     height = away[..., 1:2]
     sky = np.array([0.07, 0.10, 0.19]) + 0.10 * np.exp(-5.0 * np.abs(height)) * [1.6, 0.9, 0.6]
@@ -178,13 +181,19 @@ def _street() -> Floats64:
 
 
 def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
-    """Weights of texels at these distances from each texel, shape (n, n), rows of sum 1."""
+    """Gaussian weights of texels at some distances, (n, n); each row has the sum 1.
+
+    distances: [texels], (n, n). deviation: standard deviation [texels].
+    """
     weights = np.exp(-0.5 * (distances / deviation) ** 2)
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> Floats64:
-    """A Gaussian on a map, 1 at its place, with `width` as its deviation [deg], (H, W)."""
+    """A Gaussian spot on a map, (H, W), with the maximum 1.
+
+    away: directions of the texels, (H, W, 3). width: standard deviation [deg].
+    """
     across = np.radians(azimuth)
     up = np.radians(elevation)
     middle = [np.cos(up) * np.sin(across), np.sin(up), -np.cos(up) * np.cos(across)]
@@ -195,7 +204,7 @@ def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> 
 def _pane(
     away: Floats64, azimuths: tuple[float, float], elevations: tuple[float, float]
 ) -> Floats64:
-    """1 between these angles [deg], 0 outside, shape (H, W)."""
+    """A rectangle on a map, (H, W): 1 between some angles [deg], 0 outside."""
     azimuth = np.degrees(np.arctan2(away[..., 0], -away[..., 2]))
     elevation = np.degrees(np.arcsin(away[..., 1]))
     across = (azimuth >= azimuths[0]) & (azimuth <= azimuths[1])
@@ -205,4 +214,4 @@ def _pane(
 LIGHT_MAPS: Mapping[str, LightMap] = MappingProxyType(
     {"clouds": LightMap(_clouds()), "room": LightMap(_room()), "street": LightMap(_street())}
 )
-"""The maps that this module computes, by name."""
+"""The computed maps: name -> map."""

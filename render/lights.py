@@ -1,4 +1,4 @@
-"""Lights by name: lamps from lights.toml, and environment maps."""
+"""Named lights: lamps from lights.toml, and environment maps."""
 
 import tomllib
 from collections.abc import Mapping
@@ -12,8 +12,8 @@ _ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding
 LAMPS: Mapping[str, Light] = MappingProxyType(
     {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
 )
-"""Lamps by name: key, fill, rim, and a hemisphere of ambient light."""
+"""Lamps: name -> key light, fill light, rim light, and ambient light of a hemisphere."""
 LIGHTS: Mapping[str, Light] = MappingProxyType(
     {**LAMPS, **{name: each.light() for name, each in LIGHT_MAPS.items()}}
 )
-"""All lights by name."""
+"""All lights: name -> light."""

@@ -1,4 +1,4 @@
-"""Polylines over a scene."""
+"""Polylines that are drawn over a scene."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -11,21 +11,21 @@ from .style import Colour
 
 
 class Lines(NamedTuple):
-    """Polylines, visible through the surfaces in front of them."""
+    """Polylines, which shine through surfaces in front of them."""
 
     polylines: Sequence[npt.NDArray[Any]]
-    """Points of each line, shape (n, 3)."""
+    """Points of each line, (n, 3)."""
     colour: Colour | npt.NDArray[Any]
-    """sRGB of all lines, or one row per line, shape (len(polylines), 3)."""
+    """sRGB of all lines, or of each line, (len(polylines), 3)."""
     width: float = 1.6
-    """[pixels at scale 1]"""
+    """Width of the lines [pixels at scale 1]."""
     hidden_opacity: float = 0.45
     """Opacity behind a surface, 0 to 1."""
     opacity: float = 1.0
     """Opacity in front of all surfaces, 0 to 1."""
 
     def segments(self) -> tuple[Floats32, Unsigned32]:
-        """Position and sRGB of all points, (n, 6), and the end points of each segment, (s, 2)."""
+        """Positions and sRGB of all points, (n, 6), and point numbers of all segments, (s, 2)."""
         polylines = self.polylines
         colours = np.asarray(self.colour, np.float32)
         counts = np.array([len(line) for line in polylines], np.int64)

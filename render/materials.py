@@ -1,4 +1,4 @@
-"""Light and colours of meshes and parts: the uniforms of surface.glsl."""
+"""Choose the programs of meshes and parts, and set their uniforms for light and colours."""
 
 from collections.abc import Iterable
 
@@ -14,15 +14,18 @@ from .programs import write_uniform
 from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
 
-SKIN_SHARPNESS = 28.0  # exponent of the skin's highlight; chosen by eye: a soft sheen, not wet
-VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
+SKIN_SHARPNESS = 28.0  # exponent of the skin's highlight: a soft sheen, chosen by eye
+VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl has the same number
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
 
 def mesh_shader(
     style: Style, has_texture: bool, maps: Iterable[BumpMap], fade: Iterable[str]
 ) -> list[str]:
-    """Return the file and the defines of the program of a mesh; fade: see `fade_defines`."""
+    """Return file and defines of a mesh's program.
+
+    maps: maps that tilt normals. fade: defines of `fade_defines`.
+    """
     return [
         "surface.glsl",
         style.shading.name,
@@ -41,10 +44,10 @@ def mesh_shader(
 def part_shader(
     kind: str, opening: tuple[str, ...], has_shadow: bool, is_cut: bool, is_around: bool
 ) -> list[str]:
-    """Return the file and the defines of the program of a kind of parts, see `PartBuffers`.
+    """Return file and defines of the program for parts of a kind (see `PartBuffers`).
 
-    opening: the `Opening.defines` of the opening in front of them; empty without one.
-    is_around: whether light comes from all around, by nine coefficients.
+    opening: `Opening.defines` of the opening in front of the parts; empty if there is none.
+    is_around: whether the ambient light is given by nine coefficients.
     """
     around = ["AROUND"] * is_around
     if kind == "SHELLS":
@@ -55,7 +58,10 @@ def part_shader(
 
 
 def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_scale: float) -> None:
-    """Set the uniforms of a style: reflection of light, wireframe, and colours by values."""
+    """Set a mesh's uniforms by a style: reflection of light, wireframe, and colours by values.
+
+    line_scale: pixels of the target per unit of line width.
+    """
     set_light(program, style.light)
     if "albedo" in program:  # absent where a texture replaces it
         program["albedo"] = tuple(to_linear(style.albedo))
@@ -72,9 +78,10 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
 
 
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
-    """Set highlights of a part, from dull (broad and faint) to wet (small and bright).
+    """Set the uniforms of a part; call `set_light` first.
 
-    Call `set_light` first. Enclosed parts and fibres get no light from behind.
+    Highlights of dull parts are broad and faint, those of wet parts small and bright. Enclosed
+    parts and fibres get no rim light.
     """
     kind = part.kind
     shine = part.shine
@@ -85,10 +92,10 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     program["rim_light"] = (0.0, 0.0, 0.0) if is_rimless else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
-    # If a wet or not enclosed part is dark, its own colour is dark; light is not missing.
+    # Dark vertex colours mean missing light in dull enclosed parts, and a dark albedo in others.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
-    if kind == "STRANDS":  # half their thickness, and a pixel at distance 1
+    if kind == "STRANDS":  # radius of strands, and size of a pixel at distance 1
         _, _, width, height = view.viewport
         program["half_strand"] = part.strand_radius
         program["pixel_size"] = 1.0 / view.camera.focal(width / height, height)
@@ -111,9 +118,9 @@ def set_light(program: moderngl.Program, light: Light) -> None:
 def value_texture(
     gl: moderngl.Context, values: Unsigned8 | None, triangle_count: int
 ) -> moderngl.Texture:
-    """Return a texture with one small number per triangle, (M,), indexed by gl_PrimitiveID.
+    """Return a texture with one byte per triangle, which gl_PrimitiveID indexes.
 
-    Raises ValueError without numbers, or for another count.
+    values: (M,), with M = `triangle_count`; None or another length raises ValueError.
     """
     if values is None:
         raise ValueError("the style colours by values, so the skin needs values, one per triangle")

@@ -17,10 +17,10 @@ from .programs import write_uniform
 class Opening:
     """An opening in a skin, and the position of a part in it.
 
-    rim: points of the world around it, clockwise seen from outside, its upper half first, shape
-        (RIM_POINTS, 3).
-    is_filled: whether the part reaches the rim, like an eyeball between lids; else the part lies
-    behind the rim, like teeth behind lips.
+    rim: points around the opening in the world, (RIM_POINTS, 3), clockwise seen from outside, with
+        the upper half first.
+    is_filled: whether the part reaches the rim, like an eyeball between lids. Otherwise the part
+        lies behind the rim, like teeth behind lips.
     """
 
     RIM_POINTS: ClassVar[int] = 12
@@ -30,12 +30,12 @@ class Opening:
 
     @property
     def defines(self) -> tuple[str, str]:
-        """The define of its kind in opening.glsl, and the number of its rim points."""
+        """The defines of opening.glsl for the kind of the opening, and for the number of points."""
         kind = "FILLED" if self.is_filled else "BEHIND"
         return kind, RIM_DEFINE
 
     def set_uniforms(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Set the uniforms that place it in the view."""
+        """Set the uniforms that place the opening in a view."""
         if self.is_filled:
             seen = np.column_stack([self.rim, np.ones(len(self.rim))]) @ view.world_to_view
             _set_lids(program, seen[:, :3])
@@ -47,13 +47,13 @@ RIM_DEFINE = f"RIM_POINTS {Opening.RIM_POINTS}"
 
 
 def set_rim(program: moderngl.Program, name: str, rim: Floats64, view: PlacedView) -> None:
-    """Set the rim, see `Opening.rim`, in view coordinates."""
+    """Set a uniform to a rim (`Opening.rim`) in view space."""
     seen = np.column_stack([rim, np.ones(len(rim))]) @ view.world_to_view
     write_uniform(program, name, seen[:, :3])
 
 
 def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
-    """Set both halves of a rim as curves over the line from corner to corner."""
+    """Set both halves of a rim, in view space, as cubic polynomials over the corners' line."""
     half = len(rim) // 2
     first = rim[0]
     last = rim[half]

@@ -1,4 +1,4 @@
-"""Coloured parts, moved by bones: uploaded at first, and again after a change of shape."""
+"""Keep the buffers of coloured parts: upload a part first, and again after each change of shape."""
 
 import weakref
 from collections.abc import Callable, Iterable
@@ -18,22 +18,25 @@ from .frame import DrawnPart, PlacedPart
 from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
-# Striped parts: columns of their striation -> kind, layout and attributes in OpenGL.
+# Number of columns of a part's striation -> kind of part, layout and attributes of its vertices.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
-LAYERS = 9  # number of shells; more take longer, fewer show gaps
-FEWEST_LAYERS = 2  # shells
-LAYER_PIXELS = 10.0  # pixels for each layer, where shells are thickest
-SHADING_DENSITY = 0.6  # of shells, from which they throw a shadow
-# Of shells, from which on the lowest layer lets nothing through, wherever it is seen from: there
-# is 1 in shells.glsl for the most ragged strand.
+LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
+FEWEST_LAYERS = 2  # smallest number of shells
+LAYER_PIXELS = 10.0  # [pixels] between two layers, where shells are thickest
+SHADING_DENSITY = 0.6  # density of shells from which they throw a shadow
+# Density of shells from which the lowest layer is opaque from any side. At this density even the
+# most ragged strand of shells.glsl has the density 1.
 HIDING_DENSITY = 1.2
-LEAST_RISE = 0.5  # of strands out of the surface, as a cosine, where they hide what is below
+LEAST_RISE = 0.5  # cosine between strands and the normal, from which they hide the surface below
 
 
 class PartBuffers:
-    """A part on the graphics card, and the arrays from which it was uploaded.
+    """The buffers of a part on the graphics card.
 
-    It holds no reference to the part: `PartStore` releases it with the part.
+    They hold no reference to the part, so that `PartStore` can release them with the part.
+
+    kind: "RIGID", "STRANDS", "FIBRES" or "SHELLS".
+    is_mixed: whether the part is blended over earlier drawings.
     """
 
     def __init__(self, gl: moderngl.Context, part: DrawnPart) -> None:
@@ -43,7 +46,7 @@ class PartBuffers:
         self.shine = part.shine
         self.is_enclosed = part.is_enclosed
         self.strand_radius = part.strand_radius
-        # The program that draws it: a define of surface.glsl, or SHELLS for shells.glsl.
+        # A define of surface.glsl; SHELLS has the program shells.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
@@ -55,7 +58,6 @@ class PartBuffers:
         self._breadth = np.ones((1, 1), np.float32)
         if part.strand_radius:
             self._breadth = _strand_breadths(part.faces, len(part.vertices))
-        # Blended over earlier drawings by its opacity.
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: Floats32 | None = None
@@ -66,8 +68,7 @@ class PartBuffers:
         if self._way is not None and part.striation is not None:
             least = part.striation[:, 5][part.faces].min(axis=1)
             self._throwing = _chosen(gl, part.faces[least > SHADING_DENSITY])
-            # Without the inside of hanging hair, seen from the roots, and without hair that lies
-            # flat.
+            # The inner side of hanging hair and flat hair do not hide the surface below.
             a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
             outward = unit_vectors(np.cross(b - a, c - a))[:, None]
             rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
@@ -76,7 +77,7 @@ class PartBuffers:
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
-        """Upload the vertices of its part, unless these arrays have been uploaded before."""
+        """Upload the vertices of the part, unless the same arrays have been uploaded before."""
         vertices = placed.vertices
         if vertices is self._uploaded:
             return
@@ -88,25 +89,25 @@ class PartBuffers:
         self._uploaded = vertices
 
     def draw(self, program: moderngl.Program, *, layers: int = 1) -> None:
-        """Draw the part; the program has in_position, and in_normal and in_colour if needed.
+        """Draw the part by a program with in_position, and optionally in_normal and in_colour.
 
-        layers: number of layers, for shells.
+        layers: number of layers of shells.
         """
         self._render(program, self._indices, len(self.faces), layers)
 
     def draw_shadow(self, program: moderngl.Program) -> None:
-        """Draw the faces that throw a shadow; the thin edge of shells throws no shadow."""
+        """Draw the faces that throw a shadow; thin shells at a hem throw none."""
         self._render(program, *self._throwing, 1)
 
     def draw_hiding(self, program: moderngl.Program, view: PlacedView) -> None:
-        """Draw shells where they are dense enough to hide everything below."""
+        """Draw the shells that are dense enough to hide the surface below."""
         program["layers"] = self.layer_count(view)
         self._render(program, *self._hiding, 1)
 
     def _render(
         self, program: moderngl.Program, indices: moderngl.Buffer, count: int, layers: int
     ) -> None:
-        """Draw the front faces of the first triangles of an index buffer."""
+        """Draw the front faces among the first `count` triangles of an index buffer."""
         if not count:
             return
         if (program, indices) not in self._arrays:
@@ -122,7 +123,7 @@ class PartBuffers:
         self._gl.disable(moderngl.CULL_FACE)
 
     def layer_count(self, view: PlacedView) -> int:
-        """Number of layers of its shells in a view."""
+        """Number of layers of the part's shells in a view."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
         return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
@@ -139,15 +140,15 @@ class PartBuffers:
 
 
 def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, int]:
-    """Return a buffer of triangles, None without triangles, and their number."""
+    """Return an index buffer of faces (m, 3), and the number of faces."""
     indices = np.ascontiguousarray(faces, np.uint32)
     return gl.buffer(indices.tobytes() or bytes(12)), len(indices)
 
 
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
-    """Relative breadth of three-sided strands at each vertex: 1, but 0 at tips, shape (n, 1).
+    """Relative width of three-sided strands at each vertex, (n, 1): 0 at tips, else 1.
 
-    At a tip three triangles and three edges meet; at an open end there are four edges.
+    At a tip three triangles and three edges meet; at an open end four edges meet.
     """
     following = np.roll(faces, -1, axis=1)
     edges = np.stack([np.minimum(faces, following), np.maximum(faces, following)], axis=-1)
@@ -159,9 +160,9 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 
 
 class PlacedBuffers(NamedTuple):
-    """A placed part, and the buffers that hold it.
+    """A placed part with its buffers.
 
-    number: its surface number, see surface_number.glsl; for the skin see coverage.py.
+    number: surface number of the part, see surface_number.glsl.
     """
 
     buffers: PartBuffers
@@ -169,29 +170,29 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """The same part, numbered as background, because its edges are already smooth."""
+        """The part with the number of the background, because its edges are already smooth."""
         return self._replace(number=0)
 
     @property
     def corners(self) -> Floats64:
-        """Return the corners of its bounding box in the world, shape (8, 3)."""
+        """Return the corners of the part's bounding box in the world, (8, 3)."""
         return moved_points(self.part.transform, self.buffers.corners)
 
 
 class PartStore:
-    """The buffers of drawn parts that still exist.
+    """The buffers of all drawn parts that still exist.
 
-    A renderer may draw one person after another: the buffers of a part on the graphics card are
-    released with the last reference to the part.
+    A renderer may draw one person after another, so the buffers of a part are released when the
+    last reference to the part is gone.
     """
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        # By the id of the part; the id may be reused when the part no longer exists.
+        # The keys are ids of parts; Python may reuse an id when its part no longer exists.
         self._known: dict[int, tuple[Callable[[], DrawnPart | None], PartBuffers]] = {}
 
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
-        """Return the buffers of each part, uploaded if the part is new or has changed its shape."""
+        """Return the buffers of each part; upload those that are new or changed their shape."""
         self._forget_lost()
         return [
             PlacedBuffers(self._buffers_of(each), each, 2 + index % 187)
@@ -199,7 +200,7 @@ class PartStore:
         ]
 
     def _buffers_of(self, placed: PlacedPart) -> PartBuffers:
-        """The buffers of a part, with its present shape."""
+        """Return the buffers of a part, uploaded with its present shape."""
         part = placed.part
         get_known, buffers = self._known.get(id(part), (None, None))
         if get_known is None or buffers is None or get_known() is not part:
@@ -209,14 +210,17 @@ class PartStore:
         return buffers
 
     def _forget_lost(self) -> None:
-        """Release the buffers of parts without references."""
+        """Release the buffers of parts that no longer exist."""
         lost = [key for key, (get_part, _) in self._known.items() if get_part() is None]
         for key in lost:
             del self._known[key]
 
 
 def _reference_to(part: DrawnPart) -> Callable[[], DrawnPart | None]:
-    """Return a function that returns the part while it exists; without weak references, always."""
+    """Return a function that returns the part while it exists.
+
+    If the part's class has no weak references, the function keeps the part alive.
+    """
     try:
         return weakref.ref(part)
     except TypeError:  # for example a named tuple

@@ -1,7 +1,7 @@
-"""Probes the OpenGL of this machine without risk to the caller.
+"""Probe the OpenGL of this machine without risk to the caller.
 
-A broken driver may crash the process that loads it, so each attempt runs in its own Python process,
-which writes one JSON object.
+A broken driver may crash the process that loads it. So each attempt runs in a separate Python
+process, which writes one JSON object.
 """
 
 import json
@@ -11,16 +11,17 @@ from dataclasses import dataclass
 
 from .errors import GLError
 
-_PATIENCE = 60.0  # [s] software drivers need a few seconds on a loaded machine
+_PATIENCE = 60.0  # [s]; software drivers need a few seconds on a loaded machine
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A way to draw, and whether it works on this machine.
+    """Whether one way to draw works on this machine.
 
-    name: "offscreen" or "window".
-    message: text of the GLError if it failed, "" if it works. lends_gpu_streams: whether meshes can
-    be refined on the graphics card that draws them.
+    name: the way, "offscreen" or "window".
+    message: text of the GLError if it failed, else "".
+    samples: greatest number of samples per pixel.
+    lends_gpu_streams: whether the graphics card that draws meshes can also refine them.
     """
 
     name: str
@@ -68,7 +69,7 @@ def _probe_in_process(name: str) -> Finding:
 
 
 def write_finding(name: str) -> None:
-    """Try one way to draw in this process; write the fields of a Finding to stdout."""
+    """Try one way to draw in this process, and write the fields of a `Finding` to stdout."""
     from .surface import NEWEST_VERSION, Surface, open_offscreen
     from .window import open_window
 

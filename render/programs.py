@@ -1,7 +1,7 @@
-"""Compiles GLSL files to programs: one file per program; a define chooses the stage.
+"""Compile GLSL files to programs: each program has one file, and a define chooses the stage.
 
-`#include "name.glsl"` is replaced by that file. Compile errors are raised as GLError with file,
-stage and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
+`#include "name.glsl"` is replaced by the text of that file. A compile error raises GLError with
+file, stage and defines. All files are GLSL 330, so OpenGL 3.3 core (and 4.1 of macOS) can run them.
 """
 
 import re
@@ -26,7 +26,7 @@ def shader_text(name: str) -> str:
 
     # Line numbers in the driver's messages refer to the file itself: included lines do not count.
     def fill(match: re.Match[str]) -> str:
-        """The text of an include."""
+        """Return the text of an included file."""
         line = text.count("\n", 0, match.start()) + 2
         return f"{shader_text(match.group(1))}\n#line {line}"
 
@@ -36,12 +36,12 @@ def shader_text(name: str) -> str:
 def compile_program(
     gl: moderngl.Context, name: str, *defines: str, has_geometry_stage: bool = False
 ) -> moderngl.Program:
-    """Compile the GLSL file `name` with the given defines; GLError names file and stage."""
+    """Compile the GLSL file `name` with some defines; an error raises GLError."""
     body = shader_text(name)
     switches = "".join(f"#define {define}\n" for define in defines)
 
     def stage(stage_name: str) -> str:
-        """The text of one stage."""
+        """Return the text of one stage."""
         return f"#version 330 core\n#define {stage_name}_STAGE\n{switches}#line 1\n{body}"
 
     try:
@@ -63,7 +63,7 @@ def compile_program(
 
 
 def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]) -> None:
-    """Set a matrix or an array of floats; matrices are for row vectors, like those of pyrr."""
+    """Set a uniform to a matrix for row vectors, as in pyrr, or to an array of floats."""
     uniform = program[name]
     assert isinstance(uniform, moderngl.Uniform)
     uniform.write(np.ascontiguousarray(values, np.float32).tobytes())

@@ -1,6 +1,6 @@
-"""The target into which a scene is drawn: colours, and the surface that each pixel shows.
+"""The target into which a scene is drawn: the colour, and the surface number, of each pixel.
 
-Each pixel is shaded once. If it shows several surfaces, `sample_mixer.py` mixes their colours.
+Each pixel is shaded once. If a pixel shows several surfaces, `sample_mixer.py` mixes their colours.
 """
 
 import math
@@ -16,11 +16,12 @@ Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the 
 
 
 class RenderTarget:
-    """Textures of `size` pixels.
+    """Textures of `size` pixels, into which a scene is drawn.
 
-    samples: number of samples per pixel that smooth edges, 0 = no smoothing. colour: the picture.
-    surfaces: numbers and depths of surfaces, see surface_number.glsl. frame: a framebuffer with the
-    colour, and a depth.
+    samples: number of samples per pixel that smooth edges; 0: edges are not smoothed.
+    colour: texture with the picture.
+    surfaces: texture with surface numbers and depths, see surface_number.glsl.
+    frame: framebuffer with the colour and a depth buffer.
     """
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
@@ -28,12 +29,12 @@ class RenderTarget:
         if max(size) > limit:
             raise GLError(
                 f"a frame of {size[0]} x {size[1]} pixels: this driver draws at most {limit} "
-                "each way. Cure: ask for a smaller frame"
+                "in width and height. Cure: ask for a smaller frame"
             )
         self.size = size
         self.samples = samples
         self._gl = gl
-        self.frame_number = 0  # counts the frames since the target was made
+        self.frame_number = 0  # number of frames since the target was made
         self.colour = _texture(gl, size)
         self.surfaces = _texture(gl, size)
         depth = gl.depth_renderbuffer(size)
@@ -43,8 +44,8 @@ class RenderTarget:
         self._both = gl.framebuffer(both, depth)
 
     def release(self) -> None:
-        """Release everything to OpenGL; afterwards no drawing is possible."""
-        # moderngl binds the last bound framebuffer again whenever it makes a framebuffer.
+        """Release all textures and framebuffers; afterwards no drawing is possible."""
+        # moderngl binds the last bound framebuffer again when it makes a new one, so unbind ours.
         self._gl.detect_framebuffer(0).use()
         for each in (self.frame, self._numbered, self._both, self.colour, self.surfaces):
             each.release()
@@ -57,20 +58,21 @@ class RenderTarget:
         self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
 
     def forget_surfaces(self) -> None:
-        """Make all drawings so far background, whose edges are not smoothed again."""
+        """Make all earlier drawings background, so that their edges are not smoothed again."""
         if self.samples:
             self._gl.scissor = None
-            self._numbered.clear(green=1.0)  # no number, and the greatest depth
+            self._numbered.clear(green=1.0)  # the number 0, and the greatest depth
 
     def use_frame(self) -> None:
-        """Draw into the frame from now on, over all earlier drawings."""
+        """Draw into the whole frame from now on, over all earlier drawings."""
         self.use((0, 0, *self.size), None)
 
     def use(
         self, viewport: Rectangle, part: Rectangle | None, *, has_numbers: bool = False
     ) -> None:
-        """Draw into the frame from now on, within `part` of the viewport (None: all).
+        """Draw into a viewport of the frame from now on.
 
+        part: rectangle to which drawing is limited; None: the whole viewport.
         has_numbers: whether programs also write surface numbers.
         """
         (self._both if has_numbers else self.frame).use()
@@ -78,11 +80,11 @@ class RenderTarget:
         self._gl.scissor = part
 
     def read(self, components: int = 3) -> bytes:
-        """The frame, bottom row first, three bytes per pixel, or four."""
+        """The pixels of the frame, bottom row first; components: bytes per pixel, 3 or 4."""
         return bytes(self.frame.read(components=components, alignment=1))
 
     def read_area(self, area: Rectangle) -> tuple[Unsigned8, Unsigned8]:
-        """The colours and the surfaces of an area, bottom row first, each (height, width, 4)."""
+        """Colours and surfaces of an area, bottom row first, both (height, width, 4), uint8."""
         shape = area[3], area[2], 4
         colours = self.frame.read(viewport=area, components=4)
         surfaces = self._numbered.read(viewport=area, components=4)
@@ -93,14 +95,14 @@ class RenderTarget:
 
 
 def _texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
-    """Return a texture of four bytes per pixel, clamped at the borders."""
+    """Return a texture of four bytes per texel that is clamped at its borders."""
     texture = gl.texture(size, 4)
     texture.repeat_x = texture.repeat_y = False
     return texture
 
 
 def scaled(viewport: Rectangle, scale: float) -> Rectangle:
-    """Return the pixels of a viewport on a scaled target; ValueError if there are none."""
+    """Return a viewport, scaled and rounded outward; raises ValueError if it has no pixels."""
     left, bottom, width, height = viewport
     if width < 1 or height < 1:
         raise ValueError(
@@ -116,7 +118,7 @@ def scaled(viewport: Rectangle, scale: float) -> Rectangle:
 
 
 def around(rectangles: Sequence[Rectangle]) -> Rectangle:
-    """Return the smallest rectangle that contains all."""
+    """Return the smallest rectangle that contains all given rectangles."""
     left = min(each[0] for each in rectangles)
     bottom = min(each[1] for each in rectangles)
     right = max(each[0] + each[2] for each in rectangles)

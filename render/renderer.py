@@ -1,8 +1,8 @@
-"""Draws frames on a surface: meshes, rigid parts, lines and backgrounds.
+"""Draw frames on a surface: meshes, rigid parts, lines and backgrounds.
 
-`Renderer.draw` takes a whole picture. Programs are compiled and buffers are made on first use, and
-kept. Nothing else of a picture remains when the next one is drawn. Source: Kähler et al. 2003, Fig.
-1 (the rendering stage) and section 5 (how the figures are shaded).
+`Renderer.draw` draws a whole picture. Programs are compiled, and buffers are made, on first use.
+They are kept; nothing else of a picture affects the next one. Source: Kähler et al. 2003, Fig. 1
+(the rendering stage) and section 5 (how the figures are shaded).
 """
 
 from collections.abc import Sequence
@@ -55,7 +55,7 @@ _ALBEDO_UNIT = 3
 
 
 class Renderer:
-    """Draws on one surface, and owns the programs and buffers for it."""
+    """Draws on one surface, and owns the programs and buffers of this surface."""
 
     def __init__(self, surface: Surface) -> None:
         surface.make_current()
@@ -71,24 +71,24 @@ class Renderer:
         self._mixer: Mixer | None = None
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
-        """Lend arrays for a mesh of at most this many vertices and triangles (see Stream)."""
+        """Lend arrays for a mesh of limited numbers of vertices and triangles (see `Stream`)."""
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
     def lend_gpu_stream(
         self, vertex_capacity: int, triangle_capacity: int, columns: int, margin: float
     ) -> GpuStream:
-        """Lend buffers to a program that makes such a mesh on the graphics card (see GpuStream).
+        """Lend buffers to a program that makes a mesh on the graphics card (see `GpuStream`).
 
-        margin: largest distance of its vertices from the box of the mesh that it is made from.
+        margin: greatest distance of the made vertices from the bounding box of the source mesh.
         """
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
 
     def bump_map(self, texels: Image, steepest: float, channels: int = 4) -> BumpMap:
-        """The map of these texels (see BumpMap); skins share it: another call returns the same one.
+        """Return the map of some texels (see `BumpMap`); equal calls return the same map.
 
-        It is released with its last skin. Texels must not change.
+        So skins share maps. A map is released with its last skin. The texels must not change.
         """
         known = self._bump_maps.get(id(texels))
         if known is None or known.steepest != steepest:
@@ -97,11 +97,11 @@ class Renderer:
         return known
 
     def draw(self, *frames: Frame) -> None:
-        """Draw a picture of frames, each in its viewport; the rest is black.
+        """Draw a picture of frames, each in its viewport; all other pixels are black.
 
-        Raises ValueError for a viewport without pixels, for values that do not fit the triangles,
-        and for a frame whose stream was filled again; raises GLError if memory is short. A window
-        shows the picture at `Surface.end`.
+        A window shows the picture at `Surface.end`. Raises ValueError for a viewport without
+        pixels, for values that do not fit the triangles, and for a frame whose stream was filled
+        again. Raises GLError if memory is short.
         """
         try:
             self._draw_all(frames)
@@ -123,10 +123,9 @@ class Renderer:
         target.use_frame()
 
     def read(self, frame: Frame) -> Geometry:
-        """Numbers for each pixel of the surface; its picture does not change.
+        """Return the G-buffer of a frame; the picture on the surface does not change.
 
-        Skin and parts count as if they were opaque. Strands are thinner than a pixel and are left
-        out: pixels have the numbers of the surface behind them.
+        Skin and parts are drawn opaque. Strands are thinner than a pixel, so they are left out.
         """
         self.surface.make_current()
         size = self.surface.target.size
@@ -137,16 +136,16 @@ class Renderer:
         return self._geometry_buffer.draw(frame, parts, self._placed_view(frame))
 
     def _placed_view(self, frame: Frame) -> PlacedView:
-        """A frame's view on the present target."""
+        """Place a frame's view on the present target."""
         if frame.skin is not None:
             frame.skin.check()
         return PlacedView(frame.view, self.surface.target.size, self.surface.scale)
 
     def _draw(self, frame: Frame, view: PlacedView) -> None:
-        """Draw everything in the order that depth and blending ask for.
+        """Draw skin, parts and lines in the order that depth tests and blending need.
 
-        Solid parts come before an opened skin, which shows them. All other parts come after the
-        skin, because they need its shadow and its depths. Hair and other fibres come last.
+        Solid parts come before a translucent skin, which shows them. All other parts come after
+        the skin, because they need its shadow and depths. Hair and other fibres come last.
         """
         parts = self._parts.uploaded(frame.parts)
         later = parts
@@ -195,15 +194,15 @@ class Renderer:
                 target.forget_surfaces()
 
     def _new_mixer(self, target: RenderTarget) -> Mixer:
-        """What smooths edges on a target."""
+        """Make the mixer that smooths edges on a target."""
         if not self.surface.is_software:
             return SampleMixer(self._gl, target)
-        from .software_mixer import SoftwareMixer  # numba, which a GPU does not wait for
+        from .software_mixer import SoftwareMixer  # here, because a GPU does not need numba
 
         return SoftwareMixer(target)
 
     def _draw_under(self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers]) -> None:
-        """Draw solid parts that an opened skin will show; light passes through it to them."""
+        """Draw the solid parts that a translucent skin will show; the skin throws no shadow."""
         shadow = self._shadow(frame, view, parts, with_skin=False)
         beneath = [each for each in parts if each.part.lies_beneath]
         others = [each for each in parts if not each.part.lies_beneath]
@@ -213,7 +212,7 @@ class Renderer:
     def _shadow(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
     ) -> Shadow | None:
-        """The shadow of some parts and of the skin; None if a frame has no shadows."""
+        """Draw the shadow of some parts and of the skin; None if the frame has no shadows."""
         if not frame.style.shadows or frame.skin is None:
             return None
         if self._shadow_map is None:
@@ -253,7 +252,7 @@ class Renderer:
     def _draw_sides(
         self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, Share]]
     ) -> None:
-        """Draw back faces last: most are then hidden, and software does not shade them."""
+        """Draw front faces first; then most back faces are hidden, and software skips them."""
         self._gl.enable(moderngl.CULL_FACE)
         for side in ("back", "front"):
             self._gl.cull_face = side
@@ -270,7 +269,7 @@ class Renderer:
         shadow: Shadow | None,
         fade: Sequence[str],
     ) -> moderngl.Program:
-        """The program of a frame's skin, with its textures."""
+        """Return the program of a frame's skin, and set its uniforms and textures."""
         assert frame.skin is not None
         style = frame.style
         texture = frame.skin.maps.texture if style.textured else None
@@ -301,9 +300,9 @@ class Renderer:
         *,
         cut: Plane | None = None,
     ) -> None:
-        """Draw coloured parts; mixed ones last.
+        """Draw coloured parts; those that are blended come last.
 
-        cut: in front of it an opaque mesh will hide them, even where they come out of it.
+        cut: plane. In front of it opaque skin will hide the parts, even where they pierce the skin.
         """
         corners = [each.corners for each in parts]
         if not parts or not self._use_surfaces(view, np.concatenate(corners)):
@@ -335,7 +334,7 @@ class Renderer:
                 buffers.draw(program)
 
     def _draw_lines(self, lines: Lines, view: PlacedView) -> None:
-        """Draw polylines over the scene; they shine through surfaces that hide them."""
+        """Draw polylines over the scene; they shine through surfaces in front of them."""
         program = self._program("lines.glsl")
         rows, segments = lines.segments()
         if not len(segments):
@@ -371,7 +370,7 @@ class Renderer:
         return self._programs[key]
 
     def _use_surfaces(self, view: PlacedView, corners: Floats64) -> bool:
-        """Set the drawing area to the hull of corners; False if it is out of view."""
+        """Set the drawing area to the hull of corners (n, 3); return False if it is out of view."""
         covered = view.covered_pixels(corners)
         if is_seen := min(covered[2:]) > 0:
             self.surface.target.use(view.viewport, covered, has_numbers=True)
@@ -379,7 +378,7 @@ class Renderer:
 
 
 def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]:
-    """The kind of a part, and of the opening through which light reaches it, if there is one."""
+    """The kind of a part, and the defines of the opening through which light reaches it."""
     kind = placed.buffers.kind
     opening = placed.part.opening
     if kind != "RIGID" or opening is None or not style.skin_maps:
@@ -388,7 +387,10 @@ def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]
 
 
 def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:
-    """Groups of triangles that are drawn alike, with their maps; values have the order of all."""
+    """Pairs: a share of the triangles, and the maps with which it is drawn.
+
+    Triangles that are coloured by values are drawn together, because values have their order.
+    """
     maps = skin.shown_maps(style)
     smooth = {each: strength for each, strength in maps.items() if each is not skin.maps.bumps}
     if len(smooth) == len(maps) or style.colour_by is not ColourBy.NONE:

@@ -1,8 +1,9 @@
-"""Kernels of `software_mixer.py`: pixels beside edges, what their samples see, and their colours.
+"""Kernels of `software_mixer.py`: find edge pixels, rasterise their samples, and mix colours.
 
-They do what coverage.glsl and mixing.glsl do, but visit the pixels beside edges alone.
-Source: Olano, Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates": a triangle
-that reaches behind the eye needs no clipping.
+An edge pixel lies beside a pixel that shows another surface. The kernels compute the same as
+coverage.glsl and mixing.glsl, but visit only edge pixels. Triangles that reach behind the camera
+need no clipping. Source: Olano, Greer 1997, "Triangle scan conversion using 2D homogeneous
+coordinates".
 """
 
 from typing import NamedTuple
@@ -13,27 +14,27 @@ from ..geometry.arrays import Floats64, Integers32, Unsigned8
 from ..jit import njit
 
 SAMPLES = np.array([(0.375, 0.125), (0.875, 0.375), (0.125, 0.625), (0.625, 0.875)])
-"""Where samples are in a pixel, x and y: no two in one row or column, as drivers have them."""
+"""Positions x and y of samples in a pixel; as in drivers, no two share a row or a column."""
 
 SURFACE = 0
 HAIR = 1
-TRIANGLES = 2  # each of them is a surface of its own
+TRIANGLES = 2  # each triangle counts as a separate surface
 _LEAST_FACING = 0.05  # as in shell_layers.glsl
-_WAYS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # to a pixel, and its neighbours
-_SKIN = 190  # the first of the numbers of skin, see surface_number.glsl
-_DEPTHS = 255.0 * 255.0  # steps of depth in the numbers of a pixel
+_WAYS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # offsets to a pixel and neighbours
+_SKIN = 190  # smallest surface number of skin, see surface_number.glsl
+_DEPTHS = 255.0 * 255.0  # number of steps of a pixel's stored depth
 
 
-_Linear = tuple[float, float, float]  # a, b and c of a x + b y + c
-_Edges = tuple[_Linear, _Linear, _Linear]  # of a triangle, against its corners
-_Corner = tuple[float, float, float, float]  # see `see`
+_Linear = tuple[float, float, float]  # a, b and c of the linear function a x + b y + c
+_Edges = tuple[_Linear, _Linear, _Linear]  # edge functions; number k belongs to the edge opposite k
+_Corner = tuple[float, float, float, float]  # a row of the argument `corners` of `see`
 
 
 class Pixels(NamedTuple):
-    """The pixels beside edges in an area, row by row.
+    """The edge pixels of an area, row by row.
 
-    before: how many come before each place of the area, shape (height, width + 1). columns, rows:
-        of each, shape (n,).
+    before: number of edge pixels before each pixel of the area, (height, width + 1).
+    columns, rows: positions of the edge pixels in the area, (n,).
     """
 
     before: Integers32
@@ -43,18 +44,19 @@ class Pixels(NamedTuple):
 
 @njit
 def _differ(first: float, second: float) -> bool:
-    """Whether two numbers are of two surfaces; those of skin change slowly."""
+    """Whether two surface numbers belong to different surfaces; numbers of skin vary slowly."""
     return abs(first - second) >= (12.5 if min(first, second) >= _SKIN else 0.5)
 
 
 @njit
 def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
-    """Find pixels beside another surface. surfaces: see surface_number.glsl, (height, width, 4).
+    """Find the edge pixels of an area.
 
-    least, slope: of the tolerance of depths on one surface, a linear function of depth.
+    surfaces: surface numbers and depths, see surface_number.glsl, (height, width, 4).
+    least, slope: tolerance of depths on one surface, least + slope * depth; depths are 0 to 1.
     """
     height, width, _ = surfaces.shape
-    numbers = np.empty((height + 2, width + 2), np.int32)  # with the last ones again around
+    numbers = np.empty((height + 2, width + 2), np.int32)  # padded by repeated border pixels
     depths = np.empty((height + 2, width + 2), np.int32)
     for y in range(height + 2):
         stored = surfaces[min(max(y - 1, 0), height - 1)]
@@ -85,9 +87,10 @@ def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
 def _mark_row(
     numbers: Integers32, depths: Integers32, least: float, slope: float, is_edge: Unsigned8
 ) -> None:
-    """Mark pixels beside another surface in the middle of three rows; without a branch.
+    """Mark the edge pixels in the middle one of three rows, without branches.
 
-    least: in steps of depth. is_edge: 0 or 1, written.
+    numbers, depths: padded rows, (3, width + 2). least: [steps of depth]. is_edge: 0 or 1,
+    (width,); written.
     """
     number_below, number_here, number_above = numbers[0], numbers[1], numbers[2]
     below, here, above = depths[0], depths[1], depths[2]
@@ -117,15 +120,19 @@ def see(
     depths: Floats64,
     seen: Floats64,
 ) -> None:
-    """Let samples of pixels see triangles (M, 3), where nothing nearer is seen.
+    """Rasterise triangles (M, 3) at the samples of edge pixels, with a depth test.
 
-    corners: x and y in pixels of the area and depth 0 to 1, all times the last column, (V, 4).
-    values: of vertices, shape (V, 2): how far up they face, and how far they are from a cut; of
-        HAIR its density, and how it faces the eye. numbers: of surface_number.glsl. has_back:
-        whether the inner side is seen, too.
-    depths, seen: of each sample the depth, and the number, shape (n, SAMPLES); written.
+    corners: homogeneous coordinates (V, 4). Divided by the last column, the others are x and y
+        [pixels of the area], and depth, 0 to 1.
+    values: two numbers per vertex, (V, 2). For HAIR: density, and cosine between normal and line of
+        sight. For other kinds: y of the normal, and distance from a cut, positive in front.
+    kind: SURFACE, HAIR or TRIANGLES.
+    numbers: the uniform `numbers` of surface_number.glsl.
+    has_back: whether back faces are visible, too.
+    depths: depth of each sample, (n, number of samples); written.
+    seen: surface number of each sample, of the same shape; written.
     """
-    for sign in (1.0, -1.0):  # what is hidden behind fronts takes little time
+    for sign in (1.0, -1.0):  # fronts first, because backs behind them take little time
         if sign > 0.0 or has_back:
             _see_side(sign, corners, values, triangles, kind, numbers, pixels, depths, seen)
 
@@ -142,7 +149,7 @@ def _see_side(
     depths: Floats64,
     seen: Floats64,
 ) -> None:
-    """Let samples see the fronts of triangles, sign 1, or their backs, sign -1."""
+    """Rasterise the fronts of triangles (sign 1) or the backs (sign -1); see `see`."""
     before, columns, _ = pixels
     height = before.shape[0]
     width = before.shape[1] - 1
@@ -177,7 +184,7 @@ def _see_side(
                     if not 0.0 <= depth <= depths[n, s] or not _is_inside(edges, sign, px, py):
                         continue
                     if number < 0.0:
-                        # Drivers know it in the middle of a pixel, for all of its samples.
+                        # Drivers evaluate the number at the pixel's centre, for all its samples.
                         one, two = _mean(values, triangles, t, edges, x + 0.5, y + 0.5)
                         number = _number(kind, numbers, is_front, t, one, two)
                         if number < 0.0:
@@ -188,13 +195,13 @@ def _see_side(
 
 @njit
 def _corner(corners: Floats64, vertex: int) -> _Corner:
-    """A row of corners; as an array of its own it would take longer than all that follows."""
+    """A row of `corners` as a tuple; a new array would take longer than all that follows."""
     return corners[vertex, 0], corners[vertex, 1], corners[vertex, 2], corners[vertex, 3]
 
 
 @njit
 def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
-    """Twice the area of a triangle in front of the eye, below 0 where its back is seen."""
+    """Twice the area of a triangle in front of the camera; negative if its back is visible."""
     ax, ay = a[0] / a[3], a[1] / a[3]
     abx, aby = b[0] / b[3] - ax, b[1] / b[3] - ay
     acx, acy = c[0] / c[3] - ax, c[1] / c[3] - ay
@@ -205,19 +212,23 @@ def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
 def _span(
     a: float, b: float, c: float, a_depth: float, b_depth: float, c_depth: float, count: int
 ) -> tuple[int, int]:
-    """The first pixel along an axis that a triangle may touch, and the one behind the last."""
+    """The pixels along an axis that a triangle may touch: the first, and one past the last.
+
+    a, b, c: coordinates of the corners on this axis, times their last columns. count: number of
+    pixels.
+    """
     if min(a_depth, b_depth, c_depth) <= 0.0:
         return 0, count
     a, b, c = a / a_depth, b / b_depth, c / c_depth
     low, high = min(a, b, c), max(a, b, c)
-    if not (high >= 0.0 and low < count):  # nor where they are no numbers
+    if not (high >= 0.0 and low < count):  # also true for NaN
         return 0, 0
     return int(max(low, 0.0)), int(min(high + 1.0, count))
 
 
 @njit
 def _has_any(before: Integers32, left: int, right: int, bottom: int, top: int) -> bool:
-    """Whether any pixel is beside an edge in a rectangle."""
+    """Whether a rectangle has edge pixels."""
     for y in range(bottom, top):
         if before[y, left] != before[y, right]:
             return True
@@ -226,7 +237,7 @@ def _has_any(before: Integers32, left: int, right: int, bottom: int, top: int) -
 
 @njit
 def _edge(a: _Corner, b: _Corner) -> _Linear:
-    """The linear function of a place that is 0 on the edge; the other way its exact negative."""
+    """The edge function from a to b, which is 0 on the edge; from b to a it is exactly negated."""
     x = a[1] * b[3] - b[1] * a[3]
     y = a[3] * b[0] - b[3] * a[0]
     return x, y, a[0] * b[1] - b[0] * a[1]
@@ -234,13 +245,13 @@ def _edge(a: _Corner, b: _Corner) -> _Linear:
 
 @njit
 def _at(edge: _Linear, x: float, y: float) -> float:
-    """Evaluate an edge function a x + b y + c at a place."""
+    """Evaluate a linear function a x + b y + c."""
     return edge[0] * x + edge[1] * y + edge[2]
 
 
 @njit
 def _plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: float) -> _Linear:
-    """Depth on a triangle as a linear function of a place."""
+    """The depth on a triangle as a linear function of x and y; scale: 1 / its volume."""
     x = y = rest = 0.0
     for k in range(3):
         depth = scale * corners[k][2]
@@ -252,7 +263,7 @@ def _plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: floa
 
 @njit
 def _may_touch(edges: _Edges, sign: float, x: int, y: int) -> bool:
-    """Whether any of a pixel is inside each edge."""
+    """Whether each edge of a triangle has a part of a pixel on its inner side."""
     for k in range(3):
         slack = 0.5 * (abs(edges[k][0]) + abs(edges[k][1]))
         if sign * _at(edges[k], x + 0.5, y + 0.5) < -slack:
@@ -262,7 +273,7 @@ def _may_touch(edges: _Edges, sign: float, x: int, y: int) -> bool:
 
 @njit
 def _is_inside(edges: _Edges, sign: float, x: float, y: float) -> bool:
-    """Whether a place is inside each edge; one on an edge belongs to one side of it alone."""
+    """Whether a point is inside a triangle; a point on an edge is in one of its two triangles."""
     for k in range(3):
         across, along, _ = edges[k]
         far = sign * _at(edges[k], x, y)
@@ -277,7 +288,7 @@ def _is_inside(edges: _Edges, sign: float, x: float, y: float) -> bool:
 def _mean(
     values: Floats64, triangles: Integers32, triangle: int, edges: _Edges, x: float, y: float
 ) -> tuple[float, float]:
-    """The values of a triangle at a place."""
+    """Interpolate the two values of a triangle's corners at a point."""
     whole = one = two = 0.0
     for k in range(3):
         share = _at(edges[k], x, y)
@@ -296,7 +307,10 @@ def _number(
     one: float,
     two: float,
 ) -> float:
-    """The number of a surface, see surface_number.glsl; below 0 where it is not."""
+    """The surface number (see surface_number.glsl); negative where there is no surface.
+
+    one, two: interpolated `values` of `see`.
+    """
     if kind == HAIR:
         # As in shell_layers.glsl.
         has_edge = one >= 0.9 * min(max(2.5 * two, _LEAST_FACING), 1.0)
@@ -318,9 +332,10 @@ def mix(
     least: float,
     slope: float,
 ) -> Unsigned8:
-    """The colours (height, width, 4), mixed where samples see several surfaces; see mixing.glsl.
+    """Mix the colours (height, width, 4) of edge pixels by their samples; see mixing.glsl.
 
-    depths: 0 to 1 over the depth range of the view. Other arguments: of `find_edges` and `see`.
+    depths: 0 to 1 over the depth range of the view, (n, number of samples). Other arguments: as in
+    `find_edges` and `see`.
     """
     height, width, _ = colours.shape
     mixed = colours.copy()

@@ -1,9 +1,9 @@
-"""Smooths the edges of a picture whose pixels were shaded once, by samples of coverage.
+"""Smooth the edges of a picture by several samples per pixel, although each pixel is shaded once.
 
-Surfaces are drawn a second time, without light, to find the surface that each sample of a pixel
-sees. Where samples of a pixel see several surfaces, the colours of these are mixed. On software
-OpenGL shading takes most of the time of a picture, and shading several samples takes twice as long.
-Source: Ragan-Kelley et al. 2011, "Decoupled sampling for graphics pipelines", for the idea.
+Surfaces are drawn a second time, without light, to find the surface that each sample sees. Where
+the samples of a pixel see several surfaces, the colours of these surfaces are mixed. On software
+OpenGL shading takes most of the time of a picture; shading every sample would take twice as long.
+Source of the idea: Ragan-Kelley et al. 2011, "Decoupled sampling for graphics pipelines".
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,8 @@ from .coverage import Coverage, Drawn
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget, around
 
-_UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}  # of textures
+# Sampler -> texture unit.
+_UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}
 
 
 class Mixer(Protocol):
@@ -25,11 +26,11 @@ class Mixer(Protocol):
     target: RenderTarget
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view, all of them within areas."""
+        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
 
 
 class SampleMixer:
-    """Smooths edges in one render target with several samples a pixel."""
+    """Smooths the edges on one target, by programs on the graphics card."""
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self.target = target
@@ -45,7 +46,7 @@ class SampleMixer:
         self._mix = self._pass()
 
     def _pass(self, *defines: str) -> moderngl.VertexArray:
-        """A pass over pixels of the target."""
+        """Make a pass over all pixels of the target with some defines."""
         samples = f"SAMPLES {self.target.samples}"
         program = compile_program(self._gl, "mixing.glsl", samples, *defines)
         for name, unit in _UNITS.items():
@@ -54,7 +55,7 @@ class SampleMixer:
         return self._gl.vertex_array(program, [])
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view and lie within areas."""
+        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
         gl = self._gl
         area = around(areas)
         bands = _bands(areas)
@@ -81,7 +82,7 @@ class SampleMixer:
         area: Rectangle,
         bands: Sequence[Rectangle],
     ) -> None:
-        """Run a pass over bands of an area."""
+        """Run a pass over some bands of an area."""
         gl = self._gl
         left, bottom, width, height = area
         program = shaded.program
@@ -97,9 +98,12 @@ class SampleMixer:
 
 
 def _bands(areas: Sequence[Rectangle]) -> list[Rectangle]:
-    """Rows of pixels that hold all areas, each as wide as the areas in it: shoulders are wide."""
+    """Horizontal bands that contain all areas, each as wide as the areas in it.
+
+    So wide shoulders do not widen the bands of the head.
+    """
     _, bottom, _, height = around(areas)
-    band_height = 64  # [pixels], as high as the tiles that software draws together
+    band_height = 64  # [pixels]; height of the tiles in which software draws
     bands = []
     for low in range(bottom, bottom + height, band_height):
         high = min(low + band_height, bottom + height)

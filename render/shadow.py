@@ -1,11 +1,11 @@
-"""The shadow that a mesh and parts throw in the key light, on themselves and on parts.
+"""Draw the shadow map: the shadow of a mesh and of parts in the key light.
 
-The shadow is a depth map seen from the key light, which moves with the camera. The map has both
-sides of a mesh, because a mesh is thin, and the mouth behind its lit side must be dark. The map
-spans the whole scene and does not depend on moving objects, so shadows do not flicker with the
-face. Its texels are coarse on purpose: the look-up blends 4 x 4 of them, which sets the softness of
-the shadow. Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth
-tests as in Reeves et al. 1987.
+The map holds depths seen from the key light, which moves with the camera. Both sides of the mesh
+are drawn, because the mesh is thin, and the mouth behind its lit side must be dark. The map covers
+a region that does not depend on moving objects, so shadows do not flicker when the face moves. The
+texels are coarse on purpose: the look-up blends 4 x 4 texels, which sets the softness of shadows.
+Source: Williams 1978, "Casting curved shadows on curved surfaces". Depth tests are filtered as in
+Reeves et al. 1987.
 """
 
 from collections.abc import Sequence
@@ -20,14 +20,15 @@ from .frame import Frame
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 
-RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
-MAP_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
-TEXEL = 2.0 * MAP_REACH / RESOLUTION  # of the scene's radius
-OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-STEEP_HEIGHT = 0.999  # of a light's height: above it there is no sideways direction
+RESOLUTION = 288  # texels in width and height; on a head 1.2 mm each, so shadows fade within 5 mm
+# These lengths are fractions of the scene's radius.
+MAP_REACH = 1.15  # half the map's width; a face moves beyond its rest pose
+TEXEL = 2.0 * MAP_REACH / RESOLUTION  # size of a texel
+OFFSET = 0.003  # of look-ups above the surface, 0.45 mm on a head
+STEEP_HEIGHT = 0.999  # y of a light's direction, above which y cannot be the map's up direction
 
 
-# -1..1 -> 0..1 in x, y and z, for row vectors.
+# Matrix for row vectors that maps -1..1 to 0..1 in x, y and z.
 _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.5, 0.5, 1.0]])
 
 
@@ -35,8 +36,9 @@ _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.
 class Shadow:
     """The shadow in one picture.
 
-    depth: the map of the first surfaces that the light reaches. view_to_light: view space -> the
-    light's clip space. radius: that of the scene.
+    depth: depth texture of the first surfaces that the light reaches.
+    view_to_light: matrix from view space to the light's clip space, for row vectors, (4, 4).
+    radius: radius of the scene.
     """
 
     depth: moderngl.Texture
@@ -47,13 +49,13 @@ class Shadow:
         """Bind the shadow to a program, through a texture unit."""
         write_uniform(program, "shadow_matrix", self.view_to_light @ _TO_TEXTURE)
         program["shadow_offset"] = OFFSET * self.radius
-        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # reach of the look-up to each side
+        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # radius of the look-up
         self.depth.use(unit)
         program["shadow_map"] = unit
 
 
 class ShadowMap:
-    """One depth texture, drawn anew for every frame that has shadows."""
+    """A depth texture, which is drawn again for every frame with shadows."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
@@ -67,7 +69,7 @@ class ShadowMap:
     def draw(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
     ) -> Shadow:
-        """Draw the shadow of these parts of a frame, and of its skin if the skin throws one."""
+        """Draw the shadow of some parts of a frame, and of its skin if `with_skin` is set."""
         gl = self._gl
         view_to_light = _view_to_light(view, _basis(np.array(frame.style.light.to_key)))
         to_light = view.world_to_view @ view_to_light
@@ -85,7 +87,7 @@ class ShadowMap:
 
 
 def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
-    """View space -> the light's clip space, which holds all that throws and takes shadows."""
+    """The matrix from view space to the light's clip space; basis: see `_basis`."""
     camera = view.camera
     centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
     matrix = np.eye(4)
@@ -95,9 +97,10 @@ def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
 
 
 def _basis(toward: Floats64) -> Floats64:
-    """Return the axes of a camera at the light, as rows: right, up, away from the light.
+    """Return the axes of a camera at the light as rows, (3, 3): right, up, away from the light.
 
-    toward: direction to the light."""
+    toward: direction to the light, (3,).
+    """
     toward = toward / np.linalg.norm(toward)
     above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP_HEIGHT else (0.0, 1.0, 0.0)
     right = np.cross(above, toward)

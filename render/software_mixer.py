@@ -1,8 +1,8 @@
-"""Smooth edges by samples, as `sample_mixer.py` does, where software draws.
+"""Smooth edges like `sample_mixer.py`, but by kernels on the processor, for software OpenGL.
 
-Software OpenGL samples every pixel that a triangle touches, which takes a third of the time of a
-picture. These kernels sample only pixels beside edges, one pixel in fifty. With software OpenGL the
-picture is already in main memory.
+Software OpenGL would sample every pixel that a triangle touches, which takes a third of the time of
+a picture. These kernels sample only edge pixels, about one pixel in fifty. No copy between two
+memories is needed, because software OpenGL keeps the picture in main memory.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,12 +21,12 @@ from .render_target import Rectangle, RenderTarget, around
 from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, see
 from .translucency import NOWHERE, SUNK_DEPTH, in_view
 
-_MEAN_PLACE = 0.6  # of the strands' way, where vertices of hair lie; as in shell_layers.glsl
-_LOWEST_PLACE = 0.15
+_MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
+_LOWEST_PLACE = 0.15  # LOWEST of shell_layers.glsl
 
 
 class _Surface(NamedTuple):
-    """A surface as `see` takes it; corners: of its vertices in clip space, shape (V, 4)."""
+    """A surface as `see` takes it, except that `corners` are in clip space, (V, 4)."""
 
     corners: Floats64
     values: Floats64
@@ -37,20 +37,20 @@ class _Surface(NamedTuple):
 
 
 class SoftwareMixer:
-    """Smooths the edges on one target."""
+    """Smooths the edges on one target, by kernels on the processor."""
 
     def __init__(self, target: RenderTarget) -> None:
         self.target = target
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view, all of them within areas."""
+        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
         area = around(areas)
         colours, surfaces = self.target.read_area(area)
         pixels = find_edges(surfaces, *view.depth_tolerance)
         depths = np.ones((len(pixels.rows), len(SAMPLES)))
         seen = np.zeros_like(depths)
         to_area = _clip_to(area, view)
-        with np.errstate(all="ignore"):  # a corner that is not finite is seen nowhere
+        with np.errstate(all="ignore"):  # triangles with infinite corners are not drawn
             for surface in _surfaces(drawn, view):
                 placed = surface._replace(corners=surface.corners @ to_area)
                 see(*placed, pixels, depths, seen)
@@ -61,7 +61,7 @@ class SoftwareMixer:
 
 
 def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
-    """The matrix from clip space to pixels of an area and depths of the target."""
+    """The matrix for row vectors from clip space to pixels of an area and depths, (4, 4)."""
     left, bottom, width, height = view.viewport
     matrix = np.diag([0.5 * width, 0.5 * height, 0.5, 1.0])
     matrix[3] = 0.5 * width + left - area[0], 0.5 * height + bottom - area[1], 0.5, 1.0
@@ -69,7 +69,7 @@ def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
 
 
 def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
-    """All that samples may see, in the order in which coverage.py draws it."""
+    """All surfaces that samples may see, in the order of coverage.py."""
     if drawn.skin is not None:
         yield _of_skin(drawn, drawn.skin, view)
     for each in drawn.parts:
@@ -80,7 +80,7 @@ def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
 
 
 def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
-    """The skin, both sides."""
+    """Both sides of the skin."""
     mesh = skin.stream.mesh
     rows = mesh.vertices
     values = np.zeros((len(rows), 2))
@@ -95,7 +95,7 @@ def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
 
 
 def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
-    """A solid part. cut: under the skin before it the part is hidden, see sunk.glsl."""
+    """A solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
     places = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
     clip = _moved(places, view.projection)
     if cut is not None:
@@ -112,7 +112,7 @@ def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Sur
 def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     """The outline of short hair; see coverage.glsl."""
     striation = placed.part.part.striation
-    assert striation is not None  # as short hair has it
+    assert striation is not None  # all short hair has it
     layers = placed.buffers.layer_count(view)
     place = (np.floor(_MEAN_PLACE * layers - _LOWEST_PLACE + 0.5) + _LOWEST_PLACE) / layers
     model_view = placed.part.transform.T @ view.world_to_view
@@ -127,5 +127,5 @@ def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
 
 
 def _moved(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:
-    """Points (n, 3), moved by a matrix for row vectors, shape (n, 4)."""
+    """Multiply points (n, 3) by a matrix for row vectors (4, 4); returns (n, 4)."""
     return np.asarray(points @ matrix[:3] + matrix[3])

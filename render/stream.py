@@ -1,9 +1,9 @@
-"""Triangles that change every frame: arrays lent to the program that makes them, and buffers.
+"""Lend buffers for triangles that change every frame to the code that makes the triangles.
 
-The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) by any
-program; `upload` passes exactly those rows to OpenGL. Nothing is allocated per frame. Alternatively
-the buffers themselves are lent to a program that runs on the graphics card. Source: Kähler et al.
-2003, section 3: refined triangles go to the renderer and are forgotten.
+The borrower writes the first rows of `vertices`, `triangles` and `source`; `upload` passes exactly
+these rows to OpenGL. No memory is allocated per frame. Alternatively, the OpenGL buffers themselves
+are lent to a program on the graphics card. Source: Kähler et al. 2003, section 3: refined triangles
+go to the renderer and are forgotten.
 """
 
 from enum import Enum
@@ -18,15 +18,15 @@ from .camera import box_corners
 
 
 class Share(Enum):
-    """The part of the uploaded triangles that is drawn."""
+    """A group of the uploaded triangles."""
 
-    ALL = "all"  # in their order
-    BUMPED = "bumped"  # those with a corner where the bump map shows
-    SMOOTH = "smooth"  # all others
+    ALL = "all"  # all triangles, in their order
+    BUMPED = "bumped"  # triangles with a vertex where the bump map shows
+    SMOOTH = "smooth"  # all other triangles
 
 
-NUMBER_BYTES = 4  # bytes
-COMMAND_WORDS = 7
+NUMBER_BYTES = 4  # bytes of a float32 or uint32
+COMMAND_WORDS = 7  # numbers in the command buffer of a `GpuStream`
 _ATTRIBUTES = (
     ("3f", "in_position"),
     ("3f", "in_normal"),
@@ -39,19 +39,19 @@ _ATTRIBUTES = (
 
 
 def _layout(count: int) -> tuple[str, ...]:
-    """The format of the first attributes of a vertex, and their names."""
+    """The format of the first `count` attributes of a vertex, and their names."""
     formats, names = zip(*_ATTRIBUTES[:count], strict=True)
     return " ".join(formats), *names
 
 
-# Of a vertex in OpenGL, by the columns of rows.
+# Number of columns of a stream -> layout of its vertices in OpenGL.
 LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and count in a buffer of indices
 
 
 class UploadedMesh(Protocol):
-    """A mesh; arrays of one on the graphics card are fetched when they are read."""
+    """The mesh in a stream; arrays on the graphics card are fetched when they are read."""
 
     @property
     def vertex_count(self) -> int:
@@ -63,11 +63,11 @@ class UploadedMesh(Protocol):
 
     @property
     def vertices(self) -> Floats32:
-        """x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_count, columns)."""
+        """Rows x y z, nx ny nz[, u v[, columns of bumps]], (vertex_count, columns)."""
 
     @property
     def triangles(self) -> Unsigned32:
-        """Shape (triangle_count, 3)."""
+        """Vertex numbers, (triangle_count, 3)."""
 
 
 class _Uploaded(NamedTuple):
@@ -86,14 +86,18 @@ class _Uploaded(NamedTuple):
 
 
 class MeshBuffers:
-    """Buffers to draw one mesh of limited size, rewritten every frame.
+    """Buffers of one mesh of limited size, which is rewritten every frame.
 
-    columns: of its rows, 6 (position, normal), 8 (and texture u, v), 16 (and how much of a bump
-        map shows, 0..1 in either slot of it, and the gradients of u and v along the surface) or 18
-        (and the share that shows, 0..1, and a number below 0 where the inner side does not).
-    mesh: the last one that was written into the buffers; a new object after each upload.
-    has_bumps: whether the amounts of that mesh count.
-    corners: of a box that holds its vertices, shape (8, 3), float64.
+    columns: number of columns of the vertices. Each number includes the columns of smaller numbers:
+        - 6: position (3), normal (3)
+        - 8: texture coordinates u and v
+        - 16: strengths of the bump map's two slots, 0 to 1 (2); gradients of u and of v along the
+          surface (3 each)
+        - 18: opacity of a fading mesh, 0 to 1; a number that is negative where the inner side of
+          the mesh is hidden
+    mesh: the last uploaded mesh; each upload makes a new object.
+    has_bumps: whether the bump map shows on this mesh.
+    corners: corners of a box around its vertices, (8, 3), float64.
     """
 
     def __init__(
@@ -120,7 +124,7 @@ class MeshBuffers:
             reserve=NUMBER_BYTES * columns * vertex_capacity, dynamic=True
         )
         self.index_buffer = gl.buffer(reserve=3 * NUMBER_BYTES * triangle_capacity, dynamic=True)
-        self._parted: moderngl.Buffer | None = None  # triangles, parted by bumps; made when needed
+        self._parted: moderngl.Buffer | None = None  # triangles with bumps first; made when needed
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
             tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
@@ -137,7 +141,7 @@ class MeshBuffers:
         return self.mesh.triangle_count
 
     def _check_bumps(self, has_bumps: bool) -> None:
-        """Raise ValueError if amounts shall count, but rows have none."""
+        """Raise ValueError if bumps shall show, but the stream has no columns for them."""
         if has_bumps and self.columns < BUMPS.stop:
             raise ValueError(
                 f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
@@ -145,7 +149,7 @@ class MeshBuffers:
             )
 
     def _part_bumps(self) -> None:
-        """Upload the triangles again, those with bumps first."""
+        """Upload the triangles into a second buffer, in which those with bumps come first."""
         parts = self.mesh.triangles
         amounts = self.mesh.vertices[:, BUMPS]
         is_shown = (amounts[:, 0] > 0.0) | (amounts[:, 1] > 0.0)
@@ -159,7 +163,7 @@ class MeshBuffers:
         _write_anew(self._parted, np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
-        """Raise ValueError if there is a texture, but rows have no texture coordinates."""
+        """Raise ValueError if the stream has no columns for texture coordinates."""
         if self.columns == 6:
             raise ValueError(
                 "a texture meets a stream of 6 columns; it needs texture coordinates: lend a "
@@ -167,7 +171,7 @@ class MeshBuffers:
             )
 
     def check_fade(self) -> None:
-        """Raise ValueError if rows do not have how the mesh fades, but it shall."""
+        """Raise ValueError if the stream has no columns for fading."""
         if self.columns < 18:
             raise ValueError(
                 f"a fade on a stream of {self.columns} columns; it is columns 17 and 18: lend a "
@@ -175,9 +179,10 @@ class MeshBuffers:
             )
 
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
-        """Draw uploaded triangles, with the attributes in_position, in_normal, in_uv as needed.
+        """Draw a group of the uploaded triangles; BUMPED and SMOOTH need a mesh with bumps.
 
-        `share`: BUMPED and SMOOTH need a mesh with bumps; the program then gets in_bumps, too.
+        The program gets those of the attributes in_position, in_normal, in_uv, in_bumps,
+        in_u_gradient, in_v_gradient and in_fade that it uses.
         """
         if share is Share.ALL:
             self._draw_all(self._vertex_array(program, self.index_buffer))
@@ -189,14 +194,14 @@ class MeshBuffers:
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:
-        """Draw all triangles, in their order."""
+        """Draw all triangles in their order."""
         if self.vertex_count and self.triangle_count:
             array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
 
     def _vertex_array(
         self, program: moderngl.Program, indices: moderngl.Buffer
     ) -> moderngl.VertexArray:
-        """The vertex array of a program and a buffer of triangles; the same one each time."""
+        """Return the vertex array of a program and an index buffer; it is made once and kept."""
         array = self._vertex_arrays.get((program, indices))
         if array is None:
             array = self.context.vertex_array(
@@ -204,20 +209,18 @@ class MeshBuffers:
                 [(self.vertex_buffer, *LAYOUTS[self.columns])],
                 index_buffer=indices,
                 index_element_size=4,
-                skip_errors=True,  # flat shading uses no normals, plain skin no uv
+                skip_errors=True,  # programs need not use all attributes
             )
             self._vertex_arrays[program, indices] = array
         return array
 
 
 class Stream(MeshBuffers):
-    """Arrays of a mesh, lent to its maker, and uploaded.
+    """Arrays of a mesh, which the borrower fills and uploads.
 
-    vertices: x y z, nx ny nz[, u v[, columns of bumps]], shape (vertex_capacity, columns),
-        float32; the borrower writes.
-    triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
-    source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
-        borrower writes; never uploaded.
+    vertices: rows x y z, nx ny nz[, u v[, columns of bumps]], (vertex_capacity, columns), float32.
+    triangles: vertex numbers, (triangle_capacity, 3), uint32.
+    source: number of the base triangle of each triangle, (triangle_capacity,), int32; not uploaded.
     """
 
     def __init__(
@@ -231,7 +234,7 @@ class Stream(MeshBuffers):
     def upload(self, vertex_count: int, triangle_count: int, *, has_bumps: bool = False) -> None:
         """Pass the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
 
-        has_bumps: whether the amounts in columns 9 and 10 count; else no bump map shows.
+        has_bumps: whether the bump map shows, with the strengths of columns 9 and 10.
         """
         self._check_bumps(has_bumps)
         if not 0 <= vertex_count <= len(self.vertices):
@@ -257,26 +260,26 @@ class Stream(MeshBuffers):
 
 
 def _write_anew(buffer: moderngl.Buffer, rows: npt.NDArray[np.generic]) -> None:
-    """Write rows into a new block of memory: the driver may still draw from the old one.
+    """Write rows into a new block of memory, because the driver may still draw from the old one.
 
-    Software clears the whole block, so it is no larger than the next power of two. A driver keeps
-    blocks by size, and most frames have that size.
+    Software OpenGL clears the whole block, so its size is only the next power of two. Most frames
+    have this size, and a driver reuses blocks of equal size.
     """
     buffer.orphan(1 << max(rows.nbytes - 1, 0).bit_length())
     buffer.write(rows)
 
 
 class GpuStream(MeshBuffers):
-    """Buffers of a mesh, lent to a program on the graphics card that makes the mesh there.
+    """Buffers of a mesh that a program makes on the graphics card.
 
-    The mesh is drawn by a command that this program writes, and the number of triangles is not read
-    back. Bumps, colours by triangle, and the software path that omits hidden triangles need rows or
-    triangles on the processor: these fetch them, and wait.
+    This program also writes the command that draws the mesh, so the number of triangles is not read
+    back. Three features need the arrays on the processor, and wait until they are fetched: bumps,
+    colours by triangle, and edge smoothing with software OpenGL.
 
-    vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
-    source_buffer: the triangle that each comes from, int32.
-    command_buffer: a DrawElementsIndirectCommand, then the numbers of vertices and triangles (7
-        uint32).
+    vertex_buffer, index_buffer: vertices and triangles, as in a `Stream`.
+    source_buffer: number of the base triangle of each triangle, int32.
+    command_buffer: 7 uint32, a DrawElementsIndirectCommand, then the numbers of vertices and of
+        triangles.
     """
 
     def __init__(
@@ -302,8 +305,8 @@ class GpuStream(MeshBuffers):
         """Draw the content of these buffers from now on.
 
         mesh: an object that fetches the arrays.
-        positions: those of the mesh that it was made from, (V, 3), near its vertices.
-        has_bumps: as `Stream.upload` takes it.
+        positions: vertices of the base mesh, (V, 3); all new vertices lie near their box.
+        has_bumps: as in `Stream.upload`.
         """
         self._check_bumps(has_bumps)
         self.mesh = mesh

@@ -1,11 +1,11 @@
-"""The style of a frame: shading, colours, wireframe, background.
+"""The style of a frame: shading, colours, wireframe, light and background.
 
-Source: Kähler et al. 2003, section 5: flat and Gouraud shaded pictures, and triangles coloured by
-how far they were split. Per-pixel lighting, skin and backgrounds are additions.
-All colours are sRGB, 0..1; the shaders turn them into linear light.
+Source: Kähler et al. 2003, section 5: pictures with flat and Gouraud shading, and triangles
+coloured by their number of splits. Per-pixel lighting, skin and backgrounds are additions. All
+colours are sRGB, 0 to 1; the shaders convert them to linear light.
 
-Light comes from a key, which throws shadows, a fill, a rim and a hemisphere of ambient. All lights
-move with the camera, as in a studio where the camera stands still and the head turns.
+A key light, which throws shadows, a fill light, a rim light and ambient light from a hemisphere
+light the scene. All lights move with the camera, as in a studio where only the head turns.
 """
 
 from dataclasses import dataclass
@@ -18,23 +18,23 @@ Colour = tuple[float, float, float]
 
 
 class Shading(Enum):
-    """Where the lighting is computed."""
+    """The elements for which light is computed."""
 
-    FLAT = "flat"  # once per triangle: the geometric normal, every facet shows
-    GOURAUD = "gouraud"  # once per vertex, interpolated: the paper's pictures
-    PIXEL = "pixel"  # once per pixel, with interpolated normals
+    FLAT = "flat"  # triangles, with geometric normals, so that every facet shows
+    GOURAUD = "gouraud"  # vertices; colours are interpolated, as in the paper's pictures
+    PIXEL = "pixel"  # pixels, with interpolated normals
 
 
 class ColourBy(Enum):
     """The quantity that decides the colour of a triangle."""
 
     NONE = "none"  # the texture, or the albedo of the style
-    SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
-    SPLIT_WIRES = "split wires"  # the same, but on outlines; unsplit triangles have none
+    SPLITS = "splits"  # the number of splits of the edges of the base triangle, 0 to 6
+    SPLIT_WIRES = "split wires"  # the same number, shown by outlines of split triangles
 
     @classmethod
     def of(cls, *, splits: bool, wires: bool) -> Self:
-        """The colours for two switches; colours by splits hide wires."""
+        """Return the member for two switches; `splits` takes precedence over `wires`."""
         if splits:
             return cls.SPLITS
         return cls.SPLIT_WIRES if wires else cls.NONE
@@ -43,13 +43,12 @@ class ColourBy(Enum):
 # Albedos, chosen by eye under this package's light.
 SKIN: Colour = (0.79, 0.625, 0.545)
 FLESH: Colour = (0.60, 0.27, 0.25)  # inside of lids and mouth
-INNER_SHARE = 0.75  # of a cold albedo, on the back side
-WARM_RATIO = 0.8  # from which an albedo counts as that of skin
+INNER_SHARE = 0.75  # factor on the front's albedo for the back side, if it is not skin
+WARM_RATIO = 0.8  # warmth from which an albedo counts as skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
-# Colour of a triangle whose edges have 1..6 splits in all; 0 keeps the albedo. Green to indigo,
-# increasingly dark: hues that skin does not have, in an order that greyscale and colour blindness
-# preserve.
+# Colours of triangles whose edges have 1 to 6 splits in total. They run from green to indigo, hues
+# that skin does not have. They become darker, so greyscale and colour blindness keep their order.
 SPLIT_PALETTE: tuple[Colour, ...] = (
     (0.76, 0.89, 0.62),
     (0.46, 0.79, 0.66),
@@ -62,7 +61,7 @@ SPLIT_PALETTE: tuple[Colour, ...] = (
 
 @dataclass(frozen=True)
 class Background:
-    """A soft gradient behind the scene: `centre` behind the head, `edge` in the corners, sRGB."""
+    """A soft gradient behind the scene, from `centre` behind the head to `edge` in the corners."""
 
     centre: Colour
     edge: Colour
@@ -70,9 +69,9 @@ class Background:
 
 @dataclass(frozen=True, eq=False)
 class MapBackground:
-    """A map of light behind a scene, in the form of `LightMap`.
+    """An environment map behind a scene, which moves with the camera.
 
-    It moves with the camera, as its light does. turn: angle to the viewer's right [deg].
+    radiance: as in `LightMap`, (H, W, 3). turn: rotation to the viewer's right [deg].
     """
 
     radiance: Floats64
@@ -90,18 +89,19 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """The light of a scene; the default is the studio's, for which all other values were chosen.
+    """The light of a scene; the default is a studio, for which all other values were chosen.
 
-    to_key, to_fill: unit vectors toward the lights, in view space (x right, y up, z to the viewer).
-    key, fill, rim: linear light of each; sky, ground: of the ambient light from above and below.
-    around: nine coefficients instead of sky and ground, see light_map.py; or none.
+    to_key, to_fill: unit vectors toward the lights in view space (x right, y up, z to the viewer).
+    key, fill, rim: colours of these lights, linear.
+    sky, ground: colours of the ambient light from above and from below, linear.
+    around: nine coefficients that replace sky and ground (see light_map.py); empty: none.
     """
 
-    to_key: Vector = (-0.5300, 0.6300, 0.5677)  # over the viewer's left shoulder
+    to_key: Vector = (-0.5300, 0.6300, 0.5677)  # from behind the viewer's left shoulder
     to_fill: Vector = (0.7770, 0.0600, 0.6266)
     key: Vector = (1.16, 1.11, 1.05)
     fill: Vector = (0.17, 0.158, 0.152)
-    rim: Vector = (0.66, 0.645, 0.65)  # from behind the viewer's right
+    rim: Vector = (0.66, 0.645, 0.65)  # from behind the head, at the viewer's right
     sky: Vector = (0.215, 0.215, 0.225)
     ground: Vector = (0.125, 0.095, 0.083)
     around: tuple[Vector, ...] = ()
@@ -114,27 +114,27 @@ class Style:
     shading: Shading = Shading.PIXEL
     wireframe: bool = False
     colour_by: ColourBy = ColourBy.NONE
-    albedo: Colour = SKIN  # of the front side
-    opacity: float = 1.0  # of the skin, over earlier drawings
-    textured: bool = True  # a texture, if there is one, replaces the albedo
-    gloss: float = 0.5  # strength of the skin's highlight, 0..1
-    shadows: bool = True  # of the key light
-    skin_maps: bool = True  # fine shape, and less light in folds, by the texture
-    bumps: float = 1.0  # strength of a bump map, if there is one; 0 = none
+    albedo: Colour = SKIN  # albedo of the front side
+    opacity: float = 1.0  # opacity of the skin, 0 to 1
+    textured: bool = True  # whether a texture replaces the albedo
+    gloss: float = 0.5  # strength of the skin's highlight, 0 to 1
+    shadows: bool = True  # whether the key light throws shadows
+    skin_maps: bool = True  # whether fine shape and ambient occlusion of a texture show
+    bumps: float = 1.0  # strength of a bump map, 0 to 1
     light: Light = Light()
     background: Background | MapBackground | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
-    wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider
+    wire_width: float = 1.0  # [pixels at scale 1]; more pixels on a dense screen
     wire_opacity: float = 0.5
 
     @property
     def scattering(self) -> float:
-        """Spread of light past the border of shade, up to 1 for an albedo as warm as skin."""
+        """Strength of subsurface scattering, 0.25 to 1; an albedo as warm as skin has 1."""
         return max(self._warmth, 0.25)
 
     @property
     def inside(self) -> Colour:
-        """The albedo of the back side: red inside of lids and mouth, darker clay behind clay."""
+        """The albedo of the back side: red flesh behind skin, and darker clay behind clay."""
         warmth = min(self._warmth / WARM_RATIO, 1.0)
         red, green, blue = (
             warmth * flesh + (1.0 - warmth) * INNER_SHARE * front
@@ -144,7 +144,7 @@ class Style:
 
     @property
     def has_wires(self) -> bool:
-        """Whether outlines of triangles are drawn: of all, or of split ones."""
+        """Whether outlines of triangles are drawn."""
         return self.wireframe or self.colour_by is ColourBy.SPLIT_WIRES
 
     @property

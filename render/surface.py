@@ -1,9 +1,10 @@
-"""The surface of drawings: an offscreen frame or a window, behind one interface.
+"""Surfaces on which pictures are drawn: offscreen frames and windows, with one interface.
 
-Both kinds draw the scene into their own target (`render_target.py`), which a window then copies
-under its panels (`compositor.py`). So `read` works for both, even while a window is hidden or
-covered, and its picture includes panels that were drawn after `resolve`.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
+
+Each surface has a target into which the scene is drawn (`render_target.py`). A window then copies
+the target below its panels (`compositor.py`). So `read` also works while a window is hidden or
+covered, and returns panels that were drawn after `resolve`.
 """
 
 import contextlib
@@ -24,14 +25,13 @@ OLDEST_VERSION = 330  # OpenGL, times 100: all drawing needs it
 
 
 class Surface:
-    """The interface of both kinds; made by `open_offscreen` and `open_window`.
+    """The interface of both kinds, which `open_offscreen` and `open_window` make.
 
-    gl: the OpenGL context; when a frame begins, it gets objects without references back.
-    samples: number per pixel for smooth edges, 0 = none. target: the one in which the Renderer
-        draws.
+    gl: the OpenGL context; objects without references are released when a frame begins.
+    samples: number of samples per pixel that smooth edges; 0: edges are not smoothed.
+    target: the target into which the renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
-    scale: pixels of the target per pixel of the surface; below 1 only in a window that draws less
-        finely.
+    scale: pixels of the target per pixel of the surface; a window may set less than 1.
     """
 
     _current: ClassVar["Surface | None"] = None
@@ -51,11 +51,11 @@ class Surface:
 
     @property
     def is_software(self) -> bool:
-        """Whether the CPU does the drawing."""
+        """Whether OpenGL draws on the processor."""
         return is_software(self.gl.info["GL_RENDERER"])
 
     def begin(self) -> None:
-        """Start a frame: empty it, and undo changes of the OpenGL state by a GUI."""
+        """Start a frame: clear it, and reset OpenGL state that a GUI may have changed."""
         self.make_current()
         gl = self.gl
         self._collect()
@@ -66,36 +66,36 @@ class Surface:
         self.target.start()
 
     def _collect(self) -> None:
-        """Return objects without references to OpenGL, while its context is current."""
+        """Release OpenGL objects without references, while the context is current."""
         while self.gl.objects:
             lost = self.gl.objects.popleft()
             if not isinstance(lost, moderngl.InvalidObject):  # already released
                 lost.release()
 
     def resolve(self) -> None:
-        """End the scene: later drawings (a panel) lie on top, and their edges are not smoothed."""
+        """End the scene; later drawings, such as panels, lie on top with unsmoothed edges."""
         self.make_current()
         self.target.use_frame()
 
     def end(self) -> None:
-        """Finish the frame, which a window then shows."""
+        """Finish the frame; a window then shows it."""
         self.resolve()
 
     def read(self) -> Image:
-        """Return the visible frame, top row first, shape (H, W, 3), uint8, a new array."""
+        """Return the visible frame as a new array, top row first, (H, W, 3), uint8."""
         return self.read_scene()
 
     def read_scene(self, components: int = 3) -> Image:
-        """Return the scene without panels, at the resolution of its target, like `read`.
+        """Return the scene without panels at the target's resolution, (H, W, components), uint8.
 
-        components: 4 adds an alpha channel, and colours are multiplied by it; it is below 255 where
-        the style has no background.
+        components: 3, or 4 for an alpha channel with premultiplied colours. Alpha is below 255
+        where the style has no background.
         """
         self.make_current()
         return image_of(self.target.read(components), self.target.size, components)
 
     def make_current(self) -> None:
-        """Direct this thread's OpenGL calls here; only several open surfaces need this."""
+        """Direct this thread's OpenGL calls to this surface, if several surfaces are open."""
         if not self._is_open:
             raise GLError("this surface is closed. Cure: open a new one")
         if Surface._current is self:
@@ -106,7 +106,7 @@ class Surface:
         self._bind()
 
     def close(self) -> None:
-        """Release everything; a second call does nothing."""
+        """Release all resources; a second call does nothing."""
         if not self._is_open:
             return
         self.make_current()
@@ -131,13 +131,13 @@ class Surface:
 
 
 class OffscreenSurface(Surface):
-    """A frame without a window; needs no screen.
+    """A frame without a window, which needs no screen.
 
-    The next opened frame takes over the context of a closed one: moderngl never frees 50 kB of each
-    context, and a driver takes milliseconds for a new one.
+    A new frame takes over the context of a closed frame, because moderngl never frees 50 kB of each
+    context, and a driver takes milliseconds to make one.
     """
 
-    _is_reusable = True  # whether its context may serve again
+    _is_reusable = True  # whether another frame may take over the context
     _spare: ClassVar[tuple[moderngl.Context, dict[str, str]] | None] = None
     """An unused context, and the environment that chose its device."""
 
@@ -148,7 +148,7 @@ class OffscreenSurface(Surface):
         self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
 
     def __exit__(self, *error: object) -> None:
-        if error[0] is not None:  # the state of its context is unknown
+        if error[0] is not None:  # the state of the context is unknown
             self._is_reusable = False
         self.close()
 
@@ -156,7 +156,7 @@ class OffscreenSurface(Surface):
         self.target.release()
         self._collect()
         is_reusable = self._is_reusable and self.gl.error == "GL_NO_ERROR"
-        self._unbind()  # a released context would stay current, and block a window's own
+        self._unbind()  # a released context would stay current, and block the context of a window
         if is_reusable and OffscreenSurface._spare is None:
             OffscreenSurface._spare = self.gl, _environment()
         else:
@@ -164,9 +164,11 @@ class OffscreenSurface(Surface):
 
 
 def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
-    """Open a frame of `size` pixels without a screen; up to `samples` a pixel smooth its edges.
+    """Open an offscreen frame of `size` pixels.
 
-    Raises ValueError for an impossible size, GLError if OpenGL 3.3 is not available. The
+    samples: greatest number of samples per pixel that smooth edges; 0: edges are not smoothed.
+
+    Raises ValueError for an impossible size, and GLError if OpenGL 3.3 is not available. These
     environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
     GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
     """
@@ -191,12 +193,12 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
 
 
 def _environment() -> dict[str, str]:
-    """The variables by which glcontext chooses device and libraries."""
+    """The environment variables by which glcontext chooses device and libraries."""
     return {name: value for name, value in os.environ.items() if name.startswith("GLCONTEXT_")}
 
 
 def _offscreen_context() -> moderngl.Context:
-    """The context of a closed frame, or else a new one; it is then current."""
+    """Return the context of a closed frame, or a new context, and make it current."""
     spare = OffscreenSurface._spare
     if spare is not None and spare[1] == _environment():
         OffscreenSurface._spare = None
@@ -206,10 +208,9 @@ def _offscreen_context() -> moderngl.Context:
 
 
 def _new_context() -> moderngl.Context:
-    """A context of the newest OpenGL that we use, else of the oldest that suffices.
+    """Make a context of OpenGL 4.3, or else of 3.3, by EGL on Linux.
 
-    It uses EGL on Linux, and the native way elsewhere. Some drivers give exactly the requested
-    version.
+    Both are tried, because some drivers give exactly the requested version.
     """
     is_linux = sys.platform.startswith("linux")
     how: dict[str, Any] = {"standalone": True, **({"backend": "egl"} if is_linux else {})}
@@ -222,7 +223,10 @@ def _new_context() -> moderngl.Context:
 
 
 def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:
-    """Turn OpenGL's bytes, bottom row first, into an image, top row first, (H, W, 3) uint8."""
+    """Convert bytes of OpenGL, bottom row first, to an image, top row first.
+
+    size: width and height [pixels]. Returns (H, W, components), uint8.
+    """
     width, height = size
     return np.frombuffer(pixels, np.uint8).reshape(height, width, components)[::-1].copy()
 
@@ -234,10 +238,10 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def possible_samples(gl: moderngl.Context, samples: int) -> int:
-    """The largest power of two up to `samples` that the driver has; 0 = no smooth edges."""
+    """The greatest power of two up to `samples` that the driver supports, or 0 if less than 2."""
     if samples < 0:
         raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
-    # For both attachments of the layer.
+    # The limits of colour textures and of all other attachments may differ.
     allowed = min(samples, gl.max_samples, int(gl.info["GL_MAX_COLOR_TEXTURE_SAMPLES"]))
     return 0 if allowed < 2 else 1 << (allowed.bit_length() - 1)
 

@@ -1,10 +1,9 @@
-"""Images over the texture coordinates of a surface: its albedo, and maps of its fine shape.
+"""Textures of a surface: its albedo, and maps of its fine shape.
 
-The albedo comes as sRGB and is stored as square roots of linear light, which shaders square: eight
-bits hold both equally finely. Software OpenGL reads and blends such bytes directly, in two thirds
-of the time of decoding sRGB texel by texel; blended roots are close to blended light. The smaller
-versions are means of linear light, so a mixture of black and white texels is not too dark from
-afar.
+The albedo is given as sRGB, and stored as square roots of linear light, which shaders square. Bytes
+hold these roots as precisely as sRGB. Software OpenGL blends such bytes directly, in two thirds of
+the time of decoding sRGB texel by texel, and blended roots are close to blended light. Mipmaps are
+means of linear light, so black and white texels together do not become too dark in the distance.
 """
 
 import moderngl
@@ -15,24 +14,24 @@ from risorius.geometry.colour import to_linear
 from ..geometry.arrays import Floats32
 from .surface import Image, Surface, is_software
 
-_SAMPLED_TEXELS = 10_000  # of an image, about, for the median of its redness
-LIGHTNESS = 0.3, 0.6, 0.1  # shares of red, green and blue in lightness
+_SAMPLED_TEXELS = 10_000  # approximate number of texels for the median of redness
+LIGHTNESS = 0.3, 0.6, 0.1  # weights of red, green and blue in lightness
 # Texture units; 4 is for a window's enlargement.
 _BUMP_UNIT = 5
 _AROUND_UNIT = 6
 _FINE_UNIT = 7
-_AROUND_LEVEL = 5  # of the smaller versions: a texel there is the mean of 32 x 32
-ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
+_AROUND_LEVEL = 5  # mipmap level at which a texel is the mean of 32 x 32 texels
+ANISOTROPY = 8.0  # greatest ratio of anisotropic filtering
 
 
 class _Mipmaps:
-    """Texels of bytes on the graphics card, with smaller versions for distant surfaces.
+    """A texture of bytes with mipmaps.
 
     size: width and height [texels].
     """
 
     def __init__(self, surface: Surface, texels: Image) -> None:
-        """texels: top row first, shape (H, W, 2 or 4)."""
+        """Upload texels, top row first, (H, W, 2) or (H, W, 4), uint8."""
         surface.make_current()
         self.size = texels.shape[1], texels.shape[0]
         rows = np.ascontiguousarray(texels[::-1])  # OpenGL counts rows, and v, from below
@@ -43,10 +42,10 @@ class _Mipmaps:
 
 
 class Texture(_Mipmaps):
-    """The albedo of a skin, and maps beside it.
+    """The albedo of a skin, with ambient occlusion and fine shape.
 
-    redness: median of red over green light; redder places are lips, which gloss.
-    fine_shape: of the skin, None: there is none.
+    redness: median ratio of red to green light; redder texels are lips, which are glossy.
+    fine_shape: map of two channels, or None.
     """
 
     def __init__(
@@ -56,19 +55,19 @@ class Texture(_Mipmaps):
         occlusion: Image | None = None,
         fine_shape: "BumpMap | None" = None,
     ) -> None:
-        """Upload an image to the OpenGL of a surface, (H, W, 3), uint8: sRGB, top row first.
+        """Upload an image to the OpenGL of a surface.
 
-        Texture coordinate v is 1 at the top.
-        occlusion: share of the light from all around that arrives, 255 = all, (H, W), uint8.
-        fine_shape: a map of two channels; only per-pixel shading shows it. Raises ValueError for an
-        image of another shape or type, or beyond the driver's limit.
+        image: albedo, sRGB, top row first, (H, W, 3), uint8. Texture coordinate v is 1 at the top.
+        occlusion: ambient occlusion, 255 where all ambient light arrives, (H, W), uint8.
+        fine_shape: a map of two channels, which only per-pixel shading shows.
+        Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         gl = surface.gl
         _check(image, "texture's image", 3, "sRGB")
         if max(image.shape) > (limit := int(gl.info["GL_MAX_TEXTURE_SIZE"])):
             raise ValueError(
                 f"the texture's image has {image.shape[1]} x {image.shape[0]} texels; this driver "
-                f"takes at most {limit} each way: shrink the image"
+                f"takes at most {limit} in width and height: shrink the image"
             )
         self.redness = _median_redness(image)
         lit = np.full((1, 1), 255, np.uint8) if occlusion is None else occlusion
@@ -77,14 +76,14 @@ class Texture(_Mipmaps):
         for level in range(1, max(self.size).bit_length()):
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
             texels = _halved(texels)
-        # Drivers without the extension report 0. Software OpenGL has it, at several times the cost.
+        # Drivers without this extension report 0. In software OpenGL it is several times slower.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
         self.fine_shape = fine_shape
 
     def _means(self, gl: moderngl.Context) -> moderngl.Texture:
-        """The mean lightness of the skin around each place, one number instead of four."""
+        """Make a texture with one channel: the mean lightness of the skin around each texel."""
         width, height = (max(each >> _AROUND_LEVEL, 1) for each in self.size)
         level = min(_AROUND_LEVEL, max(self.size).bit_length() - 1)
         texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
@@ -94,7 +93,10 @@ class Texture(_Mipmaps):
         return around
 
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
-        """Bind it to a program, through a texture unit. occlusion: strength, 0 or 1."""
+        """Bind the textures to a program.
+
+        unit: texture unit of the albedo. occlusion: strength of the ambient occlusion, 0 or 1.
+        """
         program["albedo_texture"] = unit
         program["around_texture"] = _AROUND_UNIT
         self._texture.use(unit)
@@ -105,18 +107,19 @@ class Texture(_Mipmaps):
 
 
 class BumpMap(_Mipmaps):
-    """The fine shape of a surface: variable furrows, or relief (2 bytes) that always shows.
+    """A bump map: furrows of variable strength (4 channels), or constant fine shape (2 channels).
 
-    texels: those of the argument. steepest: slope of a full byte [scene's unit for one unit of the
-    texture coordinates]. define: the preprocessor's name by which shader programs read it.
+    texels: the uploaded array, (H, W, channels).
+    steepest: slope that the byte 255 means [unit of the scene per unit of texture coordinates].
+    define: preprocessor name with which programs include the map.
     """
 
     def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:
-        """Upload texels to the OpenGL of a surface, top row first, shape (H, W, channels), uint8.
+        """Upload texels to the OpenGL of a surface, top row first, (H, W, channels), uint8.
 
-        Two channels have the slope of the height along u and v (128 is level). Of four, the others
-        have the depth of the furrow, and the choice between the stream's two amounts (0 the first
-        .. 255 the second). Raises ValueError for another shape or type.
+        The first two channels are slopes of the height along u and v; 128 is flat. The third is
+        the depth of the furrow. The fourth blends the two strengths of the stream: 0 takes the
+        first, 255 the second. Raises ValueError for another shape or type.
         """
         kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
         _check(texels, kind, channels, f"slopes along u and v{more}")
@@ -126,7 +129,7 @@ class BumpMap(_Mipmaps):
         super().__init__(surface, texels)
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
-        """Bind the map to a program that includes bumps.glsl."""
+        """Bind the map to a program that includes bumps.glsl; strength: 0 to 1."""
         name = self.define.lower()
         self._texture.use(self._unit)
         program[f"{name}_map"] = self._unit
@@ -135,15 +138,15 @@ class BumpMap(_Mipmaps):
 
 
 def _values() -> Floats32:
-    """The 256 lights that an image's bytes stand for, then 256 shares of light."""
+    """Linear light of the 256 sRGB bytes, then 256 equal steps from 0 to 1, (512,)."""
     lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
     shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
     return np.concatenate([lights, shares])
 
 
 def _lit_texels(image: Image, occlusion: Image) -> Image:
-    """Roots of light and share of light of each texel, (H, W, 4); occlusion: (H, W) or (1, 1)."""
-    from .texture_kernels import write_roots  # numba, which an import does not wait for
+    """Square roots of light and of ambient occlusion, (H, W, 4); occlusion: (H, W) or (1, 1)."""
+    from .texture_kernels import write_roots  # here, because numba takes long to import
 
     texels = np.empty((*image.shape[:2], 4), np.uint8)
     write_roots(image, occlusion, _roots(_values()), texels)
@@ -151,12 +154,12 @@ def _lit_texels(image: Image, occlusion: Image) -> Image:
 
 
 def _first_halved(image: Image, occlusion: Image) -> Floats32:
-    """Lights and shares of the version that is smaller by half."""
+    """Light and ambient occlusion of the first mipmap, (H // 2, W // 2, 4)."""
     from .texture_kernels import write_halved
 
     height, width = image.shape[:2]
     if min(height, width) == 1:
-        places = np.empty((height, width, 4), np.intp)  # in the values
+        places = np.empty((height, width, 4), np.intp)  # indices of `_values()`
         places[..., :3] = image
         places[..., 3] = 256 + occlusion.astype(np.intp)
         return _halved(_values().take(places))
@@ -166,12 +169,15 @@ def _first_halved(image: Image, occlusion: Image) -> Floats32:
 
 
 def _roots(values: Floats32) -> Image:
-    """The square roots of values 0..1 as bytes."""
+    """Square roots of values from 0 to 1, as bytes."""
     return np.rint(255.0 * np.sqrt(values)).astype(np.uint8)
 
 
 def _halved(values: Floats32) -> Floats32:
-    """Means of 2 x 2 values; a last row or column without another is left out, unless alone."""
+    """Means of 2 x 2 values, (H, W, C) -> (H // 2, W // 2, C).
+
+    An odd last row or column is left out. A single row or column is kept.
+    """
     height, width, channels = values.shape
     half = np.float32(0.5)
     if height > 1:
@@ -179,21 +185,21 @@ def _halved(values: Floats32) -> Floats32:
     if width > 1:
         end = width // 2 * 2
         pairs = np.empty((len(values), width // 2, channels), np.float32)
-        for channel in range(channels):  # numpy adds long rows faster than many short ones
+        for channel in range(channels):  # numpy adds few long rows faster than many short rows
             np.add(values[:, :end:2, channel], values[:, 1:end:2, channel], out=pairs[..., channel])
         values = half * pairs
     return values
 
 
 def _median_redness(image: Image) -> float:
-    """The median of red over green light of an image (H, W, 3)."""
+    """The median ratio of red to green light of an image (H, W, 3)."""
     every = max(1, image.shape[0] * image.shape[1] // _SAMPLED_TEXELS)
     light = to_linear(image.reshape(-1, 3)[::every] / 255.0)
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 
 
 def _check(image: Image, name: str, channels: int, meaning: str) -> None:
-    """Raise ValueError for an array that is not an image of this many channels."""
+    """Raise ValueError unless an array is an image with some number of channels."""
     is_image = image.ndim == 3 and image.shape[2] == channels and image.size > 0
     if not is_image or image.dtype != np.uint8:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Kernels of `texture.py`: texels of bytes as roots of light, and the next smaller version."""
+"""Kernels of `texture.py`: convert bytes to square roots of light, and make the first mipmap."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ from ..jit import njit
 def write_roots(
     image: Unsigned8, occlusion: Unsigned8, roots: Unsigned8, texels: Unsigned8
 ) -> None:
-    """Write roots of light and shares of an image (H, W, 3), shape (H, W, 4).
+    """Write square roots of light and of ambient occlusion into `texels`, (H, W, 4).
 
-    occlusion: (H, W), or (1, 1) for all. roots: of the 256 lights, then of the 256
-    shares.
+    image: sRGB, (H, W, 3). occlusion: (H, W), or (1, 1) for all texels. roots: square roots of
+    light for the bytes of an image, then of occlusion for the bytes of `occlusion`, (512,).
     """
     height, width, _ = image.shape
     is_mapped = occlusion.size == height * width
@@ -28,9 +28,10 @@ def write_roots(
 
 @njit
 def write_halved(image: Unsigned8, occlusion: Unsigned8, values: Floats32, found: Floats32) -> None:
-    """Write means of 2 x 2 lights and shares of an image, (H // 2, W // 2, 4); see `write_roots`.
+    """Write means of 2 x 2 texels' light and occlusion into `found`, (H // 2, W // 2, 4).
 
-    values: the 256 lights, then the 256 shares.
+    image, occlusion: as in `write_roots`. values: light for the bytes of an image, then occlusion
+    for the bytes of `occlusion`, (512,).
     """
     half = np.float32(0.5)
     is_mapped = occlusion.size > 1

@@ -1,4 +1,4 @@
-"""Translucent meshes: only their nearest layer is blended over the picture."""
+"""Draw translucent meshes, and hide parts below them; only the nearest layer is blended."""
 
 import contextlib
 from collections.abc import Iterator, Sequence
@@ -13,11 +13,11 @@ from .opening import RIM_DEFINE
 from .render_target import intersection
 from .stream import MeshBuffers, Share
 
-CUT_WIDTH = 0.008  # of the scene's radius: visible thickness of cut skin
-# Of the scene's radius: largest distance of parts that come out of the skin that should hide them.
+CUT_WIDTH = 0.008  # visible thickness of cut skin, as a fraction of the scene's radius
+# Greatest distance that parts may come out of the skin, as a fraction of the scene's radius.
 SUNK_DEPTH = 0.08
-NOWHERE: Plane = 0.0, 0.0, 0.0, -1.0  # in front of which nothing is
-# Colours blend as usual; the layer starts transparent and collects premultiplied colour.
+NOWHERE: Plane = 0.0, 0.0, 0.0, -1.0  # no point lies in front of this plane
+# Blends colours by their opacity; a transparent background collects premultiplied colours.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
     moderngl.ONE_MINUS_SRC_ALPHA,
@@ -28,9 +28,9 @@ _PREMULTIPLYING_BLEND: Any = (
 
 @contextlib.contextmanager
 def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
-    """Blend the drawings of this block over the picture by their opacity.
+    """Blend drawings within this context over the picture by their opacity.
 
-    hides: whether these drawings hide later drawings behind them.
+    hides: whether these drawings write depths, so that they hide later drawings.
     """
     gl.enable(moderngl.BLEND)
     gl.blend_func = _PREMULTIPLYING_BLEND
@@ -45,7 +45,7 @@ def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
 
 @contextlib.contextmanager
 def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
-    """Change no colours by the drawings of this block."""
+    """Let drawings within this context change depths, but no colours."""
     gl.enable(moderngl.BLEND)
     gl.blend_func = moderngl.ZERO, moderngl.ONE
     try:
@@ -63,7 +63,8 @@ def draw_nearest(
 ) -> None:
     """Blend only the nearest layer of a mesh: draw depths first, then colours at these depths.
 
-    is_cut: whether parts of it are opaque; their inner side comes before them.
+    shares: programs, and the groups of triangles that they draw.
+    is_cut: whether a part of the mesh is opaque; its inner side is then drawn first.
     """
     gl.enable(moderngl.CULL_FACE)
     if is_cut:
@@ -81,28 +82,28 @@ def draw_nearest(
 
 
 def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:
-    """Set the opacity of a frame's skin, and the plane behind which it holds (None: everywhere)."""
+    """Set the opacity of a frame's skin, and the plane behind which the skin is translucent."""
     program["opacity"] = frame.style.opacity
     set_cut(program, view, frame.cut or NOWHERE, CUT_WIDTH)
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
-    """Set the plane that cuts the skin, and the visible width of the cut [scene's radii]."""
+    """Set the plane that cuts the skin; width: of the cut, as a fraction of the scene's radius."""
     program["cut"] = in_view(cut, view)
     if "cut_width" in program:
         program["cut_width"] = width * view.camera.scene_radius
 
 
 def in_view(plane: Plane, view: PlacedView) -> Plane:
-    """A plane of the world in view space."""
+    """Transform a plane from the world to view space."""
     a, b, c, d = np.linalg.inv(view.world_to_view) @ plane
     return a, b, c, d
 
 
 def fade_defines(skin: Skin, view: PlacedView) -> tuple[str, ...]:
-    """The defines for a skin that fades, empty where a picture cannot show it.
+    """The defines for a skin that fades; empty if the fading part is out of view.
 
-    MOUTH: the part that fades may be in front of the mouth, or in it.
+    MOUTH is added if the fading part may overlap the mouth on the screen.
     """
     if skin.fading is None or not len(skin.fading):
         return ()

@@ -1,7 +1,7 @@
-"""The window: a GLFW window whose frame is drawn like an offscreen one and then shown.
+"""GLFW windows, whose frames are drawn like offscreen frames and then shown.
 
-glfw is imported only when a window is opened: a GUI library with its own GLFW must be imported
-before it, and a server without a screen never needs it.
+glfw is imported only when a window is opened, because a GUI library with its own GLFW must be
+imported before glfw, and a server without a screen does not need glfw.
 """
 
 import contextlib
@@ -28,13 +28,14 @@ from .surface import (
 
 
 class WindowSurface(Surface):
-    """A surface that is visible in a window.
+    """A surface in a window; `detail`, `area`, `rules` and `labels` may be set for the next frames.
 
-    handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
-    area: the part that shows the scene, if panels hide the rest; None: all. Settable.
-    rules: plain rectangles over the scene, such as a line between two halves. Settable.
-    labels: pictures over both, such as captions: x and y of the lower left corner [pixels]; RGBA,
-        premultiplied, top row first, shape (h, w, 4), uint8. Settable.
+    handle: the GLFW window, for input and GUI libraries.
+    detail: resolution of the scene.
+    area: the rectangle that shows the scene [pixels], if panels hide the rest; None: all.
+    rules: rectangles [pixels] in one colour over the scene, such as a line between two halves.
+    labels: pictures over the scene and the rules, such as captions. Each has x and y of its lower
+        left corner [pixels], and premultiplied RGBA, top row first, (h, w, 4), uint8.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -46,18 +47,18 @@ class WindowSurface(Surface):
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
         self.labels: Sequence[tuple[int, int, Image]] = ()
         self._compositor = Compositor(gl, size)
-        self._is_resolved = False  # in this frame; panels may have been drawn
+        self._is_resolved = False  # whether `resolve` was called in this frame
         self._is_laid = False  # whether the compositor has the present scene
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the window's frame [pixels], in which viewports are given."""
+        """Width and height of the window's frame [pixels]; viewports are given in these pixels."""
         return self._compositor.size
 
     @property
     def frame_size(self) -> tuple[int, int]:
-        """Width and height of a frame that begins now [pixels]."""
+        """Width and height that a frame would have if it began now [pixels]."""
         width, height = self._glfw.get_framebuffer_size(self.handle)
         return max(int(width), 1), max(int(height), 1)  # a minimised window counts as one pixel
 
@@ -71,7 +72,7 @@ class WindowSurface(Surface):
         self._glfw.set_window_should_close(self.handle, value)
 
     def begin(self) -> None:
-        """Start a frame in the window's present size, with the fineness of `detail`."""
+        """Start a frame in the window's present size, with the resolution of `detail`."""
         self.make_current()
         size = self.frame_size
         if size != self.size:
@@ -86,20 +87,20 @@ class WindowSurface(Surface):
         super().begin()
 
     def resolve(self) -> None:
-        """End the scene: panels lie on top. A second call forgets panels and keeps the scene."""
+        """End the scene; later drawings are panels on top. A second call removes the panels."""
         self.make_current()
         self._compositor.compose(self.target, self.area)
         self._draw_marks(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
-        """Paint a part of the resolved frame in one colour, which is cheaper than a quad."""
+        """Paint a rectangle of the resolved frame in one colour, faster than a quad would."""
         self._compositor.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
-        """Finish the frame and show it: if resolved, as it is; else the scene with the last panels.
+        """Finish the frame and show it; without a call of `resolve`, the last panels stay.
 
-        Keeping the last panels saves a copy of the scene, and the drawing of unchanged panels.
+        So unchanged panels need not be drawn again, and the scene is copied only once.
         """
         self.make_current()
         if self._is_resolved:
@@ -120,7 +121,7 @@ class WindowSurface(Surface):
             self._compositor.lay(*label)
 
     def show(self, image: Image) -> None:
-        """Show a picture instead of a frame, (H, W, 3), uint8, of the frame's size."""
+        """Show an image of the frame's size instead of a frame, (H, W, 3), uint8."""
         self.make_current()
         self.gl.screen.use()
         self.gl.scissor = None
@@ -128,7 +129,7 @@ class WindowSurface(Surface):
         self._glfw.swap_buffers(self.handle)
 
     def read(self) -> Image:
-        """Return the visible frame with the panels; see `Surface.read`."""
+        """Return the visible frame with panels, top row first, (H, W, 3), uint8."""
         self.make_current()
         if not self._is_laid:
             self._compositor.compose(self.target, self.area)
@@ -147,7 +148,7 @@ class WindowSurface(Surface):
 
 
 class _Loader:
-    """Gives moderngl the OpenGL functions of the context that GLFW made, on any platform."""
+    """Gives moderngl the OpenGL functions of a context of GLFW, on any platform."""
 
     def __init__(self, glfw: ModuleType) -> None:
         self._glfw = glfw
@@ -175,12 +176,15 @@ def open_window(
     visible: bool = True,
     is_scaled: bool = False,
 ) -> WindowSurface:
-    """Open a window of `size` screen units, or a smaller one if the screen has no room.
+    """Open a window of `size` screen units, or a smaller window if the screen is smaller.
 
-    Its frame may have more pixels. is_scaled: `size` is for a screen of ordinary density; a dense
-    screen gets more if its unit is a pixel. Raises ValueError for an impossible size, GLError if
-    there is no screen or no OpenGL 3.3 core. glfw must come from the GUI library: import
-    imgui_bundle before, if you use it.
+    Its frame may have more pixels than screen units. If you use imgui_bundle, import it first: glfw
+    must come from the GUI library.
+
+    samples: as in `open_offscreen`.
+    is_scaled: whether to enlarge the window on dense screens whose unit is a pixel.
+
+    Raises ValueError for an impossible size, and GLError if there is no screen or no OpenGL 3.3.
     """
     check_size(size)
     glfw = _import_glfw()
@@ -216,7 +220,7 @@ def open_window(
 
 
 def _fit(glfw: ModuleType, handle: Any) -> None:
-    """Limit a window with its frame to the room of its desktop."""
+    """Shrink a window so that it fits, with its decorations, into the work area of the screen."""
     if not (monitor := glfw.get_primary_monitor()):
         return
     left, top, right, bottom = glfw.get_window_frame_size(handle)
@@ -235,7 +239,7 @@ def _hint(glfw: ModuleType, is_scaled: bool, version: int) -> None:
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
     glfw.window_hint(glfw.VISIBLE, False)
     glfw.window_hint(glfw.SCALE_TO_MONITOR, is_scaled)
-    # The scene has smooth edges already; the window needs neither samples nor depth.
+    # Edges are smoothed in the target, so the window needs neither samples nor depths.
     glfw.window_hint(glfw.SAMPLES, 0)
     glfw.window_hint(glfw.DEPTH_BITS, 0)
     glfw.window_hint(glfw.STENCIL_BITS, 0)
@@ -251,7 +255,7 @@ def _import_glfw() -> ModuleType:
 
 @contextlib.contextmanager
 def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
-    """Collect the reports of GLFW in place of its Python warnings."""
+    """Collect error reports of GLFW, which else become Python warnings."""
     texts: list[str] = []
 
     def note(code: int, text: bytes | str) -> None:

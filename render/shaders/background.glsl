@@ -1,5 +1,4 @@
-// The background of a viewport, at the far end of depth: a soft gradient, or with MAP a map of
-// light from all around.
+// The background of a viewport, at the greatest depth: a soft gradient, or with MAP an environment map.
 
 #if defined(VERTEX_STAGE)
 
@@ -20,12 +19,12 @@ out vec4 pixel_colour;
 #include "display.glsl"
 
 const float PI = 3.14159265;
-uniform sampler2D radiance;  // linear light, its first row above; see light_map.py
-uniform vec2 half_size;      // of the viewport at distance 1 from the eye
-uniform float turn;          // of the map to the right [radians]
+uniform sampler2D radiance;  // linear light, the zenith in the first row; see light_map.py
+uniform vec2 half_size;      // half width and height of the viewport at distance 1 from the camera
+uniform float turn;          // rotation of the map to the right [radians]
 
-// The radiance at a place of the map, 0..1 each way: a cubic B-spline of its texels, for straight
-// lines between a few hundred texels show as a grid. Four blended reads make the sixteen of it.
+// The radiance at texture coordinates 0..1, by a cubic B-spline of the texels. Linear interpolation of
+// a few hundred texels would show as a grid. Four blended reads replace sixteen.
 vec3 smooth_radiance(vec2 at) {
     vec2 size = vec2(textureSize(radiance, 0));
     vec2 texel = at * size - 0.5;
@@ -64,7 +63,7 @@ vec3 background() {
 #endif
 
 void main() {
-    // Half a grey level of interleaved gradient noise (Jimenez 2014) hides the steps of 8 bits.
+    // Interleaved gradient noise (Jimenez 2014) of half a grey level hides the steps of 8 bits.
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     pixel_colour = vec4(background() + (noise - 0.5) / 255.0, 1.0);
 }

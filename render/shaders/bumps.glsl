@@ -1,21 +1,21 @@
-// Fine shape of a surface, from maps over the texture coordinates (Blinn 1978): with FINE one that is
-// always there, with BUMPS normals and albedo of furrows, as far as two amounts, interpolated from
-// vertices, let them show.
-// The gradient of fine shape comes from screen-space derivatives: M. Mikkelsen, "Bump mapping
-// unparametrized surfaces on the GPU", 2010; here the maps know the slopes along u and v. Those
-// derivatives jump from triangle to triangle where skin is shortened, and a furrow broke into
-// scraps. So furrows take the gradients of u and v from vertices.
+// Bump mapping (Blinn 1978) by maps over texture coordinates, which hold slopes along u and v. FINE:
+// constant fine shape. BUMPS: normals and albedo of furrows, whose two strengths are interpolated from
+// vertices.
+// For fine shape, the gradients of u and v are screen-space derivatives: M. Mikkelsen, "Bump mapping
+// unparametrized surfaces on the GPU", 2010. Where skin is compressed, these derivatives jump from
+// triangle to triangle, which would break furrows into pieces. So furrows take the gradients of u and v
+// from vertices.
 
 #if defined(FINE)
-uniform sampler2D fine_map;  // slope along u and v
-uniform float fine_slope;    // height over texture coordinates of a full byte
+uniform sampler2D fine_map;  // slopes along u and v
+uniform float fine_slope;    // slope that the byte 255 means
 uniform float fine_strength;
 #endif
 #if defined(BUMPS)
-uniform sampler2D bumps_map;   // slope along u and v, depth of the furrow, which amount counts
+uniform sampler2D bumps_map;   // slopes along u and v, depth of the furrow, blend of both strengths
 uniform float bumps_slope;
 uniform float bumps_strength;
-const vec3 FURROW = vec3(0.40, 0.50, 0.52);  // how much darker the deepest is; light in it is red
+const vec3 FURROW = vec3(0.40, 0.50, 0.52);  // light that the deepest furrow loses; the rest is reddish
 #define BUMP_AMOUNTS surface.bump_amounts
 #define GRADIENTS mat2x3(surface.u_gradient, surface.v_gradient)
 #else
@@ -24,16 +24,16 @@ const vec3 FURROW = vec3(0.40, 0.50, 0.52);  // how much darker the deepest is; 
 #endif
 
 struct Bump {
-    vec2 fine_slope;  // of fine shape along u and v
-    vec2 slope;       // of furrows along u and v
-    float depth;
+    vec2 fine_slope;  // slopes of fine shape along u and v
+    vec2 slope;       // slopes of furrows along u and v
+    float depth;      // depth of the furrow, 0..1
 };
 
 vec2 slopes(vec2 texel, float steepest) {
     return (texel * 255.0 - 128.0) * (steepest / 127.0);
 }
 
-// The inner side of a surface has none.
+// Reads the maps; the inner side of a surface has no bumps.
 Bump bump_at(vec2 uv, vec2 amounts, bool is_front) {
     Bump bump = Bump(vec2(0.0), vec2(0.0), 0.0);
     float share = is_front ? 1.0 : 0.0;
@@ -49,7 +49,7 @@ Bump bump_at(vec2 uv, vec2 amounts, bool is_front) {
     return bump;
 }
 
-// `normal` points out of the surface; gradients: of u and v.
+// Tilts `normal`, which points out of the surface; gradients: of u and v along the surface.
 vec3 bumped(vec3 normal, vec3 position, vec2 uv, Bump bump, mat2x3 gradients) {
     vec3 along_x = dFdx(position), along_y = dFdy(position);
     float rise_x = dot(bump.fine_slope, dFdx(uv)), rise_y = dot(bump.fine_slope, dFdy(uv));

@@ -1,4 +1,4 @@
-// The surface that each sample of a pixel sees: its number and its depth, and no light.
+// The number and the depth of the surface that each sample of a pixel sees, without light.
 // SHELLS: the outline of short hair. PIXEL, TRANSLUCENT, SUNK, TRIANGLES: as in surface.glsl.
 
 #if defined(SHELLS)

@@ -1,7 +1,7 @@
-// Linear light -> the screen's numbers.
+// Converts linear light to sRGB.
 
-// Soft shoulder above 0.8, then linear light -> sRGB by square roots (max error 0.004, after
-// I. Chilliant's fit): on software OpenGL half the cost of pow.
+// A soft shoulder compresses light above 0.8. Then square roots approximate sRGB (I. Chilliant's fit,
+// greatest error 0.004), which takes half the time of pow on software OpenGL.
 vec3 display(vec3 light) {
     vec3 over = max(light - 0.8, 0.0);
     light = min(light, 0.8) + over / (1.0 + 5.0 * over);

@@ -1,8 +1,9 @@
-// Smooth edges for a picture of one sample a pixel. FIND only finds where they are, and marks them in
-// the depth of the target: software then skips all other pixels in the pass that smooths.
+// Smooths the edges of a picture with one sample per pixel. FIND only finds edges, and marks their
+// pixels in the depth buffer; so the smoothing pass skips all other pixels on software OpenGL.
 //
-// Source: Timothy Lottes, "FXAA" (NVIDIA, 2009), the short version: where light changes, pixels
-// along the edge are averaged, unless that reaches beyond it.
+// Source: Timothy Lottes, "FXAA" (NVIDIA, 2009), the short version. Where lightness changes, pixels
+// along the edge are averaged. A wide mean that leaves the range of the neighbours is replaced by a
+// narrow one.
 
 #if defined(VERTEX_STAGE)
 
@@ -15,9 +16,10 @@ void main() {
 uniform sampler2D scene;
 out vec4 pixel_colour;
 
-const vec3 LIGHTNESS = vec3(0.299, 0.587, 0.114);  // of sRGB
-const float LEAST = 0.06, LEAST_SHARE = 0.16;  // of a change that is an edge: features of skin are less
-const float REACH = 2.5;  // pixels along an edge; farther, and pupils become squares
+const vec3 LIGHTNESS = vec3(0.299, 0.587, 0.114);  // weights of sRGB
+// Smallest change that counts as an edge, absolute and relative; details of skin change less.
+const float LEAST = 0.06, LEAST_SHARE = 0.16;
+const float REACH = 2.5;  // [pixels] along an edge; more would make pupils square
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy), end = textureSize(scene, 0) - 1;

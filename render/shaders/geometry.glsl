@@ -1,5 +1,4 @@
-// The surface in each pixel, as numbers: no light, no blending, one sample.
-// BUMPS, FINE: of the skin, as in surface.glsl.
+// The G-buffer, with one sample per pixel. BUMPS, FINE: maps of the skin, as in surface.glsl.
 
 #define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; \
     vec3 u_gradient; vec3 v_gradient; float dense;
@@ -8,13 +7,13 @@
 
 in vec3 in_position;
 in vec3 in_normal;
-in vec2 in_uv;      // of the skin; parts have none
+in vec2 in_uv;      // for the skin only
 #if defined(BUMPS)
 in vec2 in_bumps;
 in vec3 in_u_gradient;
 in vec3 in_v_gradient;
 #endif
-in vec3 in_way;     // of shells; a part without it is solid
+in vec3 in_way;     // for shells only
 in float in_dense;
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -52,7 +51,7 @@ void main() {
     float facing = abs(dot(normalize(surface.normal), normalize(surface.position)));
     if (!is_hair(surface.dense, facing)) discard;
     float side = gl_FrontFacing ? 1.0 : -1.0;
-    // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
+    // Converts OpenGL's view axes to x right, y down, z away from the camera.
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
 #if defined(RELIEF)
     Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);

@@ -1,36 +1,35 @@
-// Light for a portrait, fixed to the camera: a key, a weak fill, a rim from behind the right
-// shoulder, and a hemisphere of ambient light; see light.py.
-// Everything is in view space (x right, y up, z to the viewer) and in linear light.
+// Light of a portrait, fixed to the camera: a key light, a weak fill light, a rim light from behind
+// the head at the right, and ambient light; see `Light` in style.py.
+// All vectors are in view space (x right, y up, z to the viewer); all light is linear.
 
-uniform vec3 to_key;  // unit vector toward the key light; shadow.py looks from there
+uniform vec3 to_key;  // unit vector toward the key light, from which shadow.py looks
 uniform vec3 to_fill;
 uniform vec3 key_light;
 uniform vec3 fill_light;
 uniform vec3 rim_light;
 #if defined(AROUND)
-uniform vec3 around[9];  // light from all around, see light_map.py
+uniform vec3 around[9];  // coefficients of ambient light, see light_map.py
 #else
 uniform vec3 sky;
 uniform vec3 ground;
 #endif
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
-// How far each colour of light travels in skin: red past the terminator, blue hardly.
+// How far each colour scatters in skin past the terminator: red far, blue hardly.
 const vec3 SCATTER = vec3(0.19, 0.13, 0.098);
-// The same within the edge of a cast shadow, and the key light that lit skin nearby throws back.
-const vec3 BLEED = vec3(0.30, 0.10, 0.04);
-const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
-const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of the light that folds take away
-const float OCCLUDED_KEY = 0.35;  // how much folds take of the key: an area light, not a point
-const float SHEEN = 0.9;  // of the narrow lobe of skin, beside the wide one
-const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // of the ambient light, from skin nearby
+const vec3 BLEED = vec3(0.30, 0.10, 0.04);  // scattering into the edge of a cast shadow
+const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);  // key light that lit skin reflects into shadows
+const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // part of occluded light that skin reflects
+const float OCCLUDED_KEY = 0.35;  // how much occlusion reduces the key light, which is an area light
+const float SHEEN = 0.9;  // strength of the narrow specular lobe of skin
+const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // tint of ambient light by skin nearby
 
 struct Lit {
-    vec3 key;       // of the key light, straight: times albedo and lightness
-    vec3 rest;      // all other light, and the key light around edges: times albedo
-    vec3 specular;  // added, times lightness
+    vec3 key;       // direct key light; multiply by albedo and lightness
+    vec3 rest;      // scattered key light and all other light; multiply by albedo
+    vec3 specular;  // specular light; multiply by lightness, and add
 };
 
-// Light from all around on a surface.
+// Ambient light on a surface.
 vec3 hemisphere(vec3 normal) {
 #if defined(AROUND)
     float x = normal.x, y = normal.y, z = normal.z;
@@ -43,25 +42,25 @@ vec3 hemisphere(vec3 normal) {
 #endif
 }
 
-// `openness`: how much of the rim light arrives. It comes from behind and throws no shadows, so that
-// folds, which it hardly reaches, must take it away. `subsurface`: above 0.
+// `openness`: fraction of the rim light that arrives. The rim light throws no shadows, but hardly
+// reaches folds, so occlusion must reduce it there. `subsurface`: strength of scattering, above 0.
 Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float gloss, float sharpness) {
     vec3 scatter = SCATTER * subsurface;
     float rim = max(dot(normal, TO_RIM), 0.0) * openness;
     float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
     float fresnel = grazing * grazing * grazing;
     vec3 ambient = hemisphere(normal);
-    // exp2(-sharpness (1 - cosine)) stands for a power of the cosine: one exp2 and no log2. Skin
-    // has two lobes, the oil on it a narrow one (d'Eon, Luebke 2007, GPU Gems 3, chapter 14).
+    // exp2(-sharpness (1 - cosine)) replaces a power of the cosine, which would also need log2. Skin
+    // has a wide lobe, and its oil a narrow lobe (d'Eon, Luebke 2007, GPU Gems 3, chapter 14).
     float highlight = exp2(sharpness * (dot(normal, normalize(to_key + to_eye)) - 1.0));
     float narrow = highlight * highlight;
     highlight *= mix(1.0, 0.8 + SHEEN * narrow * narrow, subsurface);
     Lit lit;
-    // Key light that is scattered past the terminator has no shadow, and straight key light fades
-    // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
+    // Key light that scatters past the terminator is not shadowed, and direct key light fades toward
+    // the terminator. So the errors of the shadow map, which are largest there, are invisible.
     float facing = dot(normal, to_key);
     lit.key = key_light / (1.0 + scatter) * max(facing, 0.0);
-    // Scattered light ends with a slope of 0, or one would see a contour where the last of it ends.
+    // Scattered light ends with a slope of 0, else its end would show as a contour.
     vec3 past = max(2.0 * scatter + min(facing, 0.0), 0.0);
     lit.rest = key_light * past * past / (4.0 * scatter * (1.0 + scatter))
         + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
@@ -75,17 +74,17 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     return lit;
 }
 
-// `lightness` is 1 in the key's light and 0 in its full shadow; `ambient_occlusion` 1 where all light comes
-// in from all around, 0 where none does.
+// `lightness`: 1 in the key light, 0 in its full shadow. `ambient_occlusion`: 1 where all ambient light
+// arrives, 0 where none arrives.
 vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface, float ambient_occlusion) {
-    // Light that skin nearby takes away it gives back in part, redder.
+    // Skin nearby occludes light, and reflects a part of it, which is redder.
     vec3 open = ambient_occlusion * (vec3(1.0) + (1.0 - ambient_occlusion) * subsurface * OCCLUDED_BOUNCE);
     vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE * open);
     return albedo * (lit.key * (lightness * mix(1.0, ambient_occlusion, OCCLUDED_KEY) + glow) + lit.rest * open)
         + lit.specular * (0.25 + 0.75 * lightness) * ambient_occlusion;
 }
 
-// The inner side of the skin: lit by the hemisphere and a bounce of the key alone.
+// Light on the inner side of the skin: ambient light, and a reflection of the key light.
 vec3 inside(vec3 normal) {
     return 0.8 * hemisphere(normal) + 0.22 * max(dot(normal, to_key), 0.0);
 }

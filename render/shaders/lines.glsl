@@ -21,7 +21,7 @@ in vec3 vertex_colour[];
 uniform vec2 viewport_size;
 uniform float half_width;
 out vec3 colour;
-noperspective out float across;  // [pixels] from the middle of the line
+noperspective out float across;  // [pixels] from the centre line
 
 void main() {
     vec4 from = gl_in[0].gl_Position, to = gl_in[1].gl_Position;

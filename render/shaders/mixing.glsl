@@ -1,9 +1,9 @@
-// Smooth edges of a picture whose pixels were shaded once, by samples that found which surface they
-// see (coverage.glsl). FIND only finds pixels beside another surface, and marks them in the depth of
-// the target: software then skips all others in the pass that mixes colours.
+// Smooths the edges of a picture whose pixels were shaded once, by samples with known surfaces
+// (coverage.glsl). FIND only finds edge pixels, which lie beside another surface, and marks them in
+// the depth buffer; so the mixing pass skips all other pixels on software OpenGL.
 //
-// A sample that sees the surface of its pixel has the colour of that pixel. Any other has that of the
-// neighbour whose surface fits best. SAMPLES: how many a pixel has.
+// A sample that sees the surface of its pixel takes the colour of this pixel. Any other sample takes
+// the colour of the neighbour whose surface fits best. SAMPLES: number of samples per pixel.
 
 #if defined(VERTEX_STAGE)
 
@@ -13,12 +13,12 @@ void main() {
 
 #elif defined(FRAGMENT_STAGE)
 
-uniform sampler2D surfaces;  // of pixels, see surface_number.glsl
-uniform vec2 tolerance;      // of depths on one surface, a linear function of depth
-uniform ivec4 area;          // in which neighbours are: left, bottom, right, top
+uniform sampler2D surfaces;  // surface numbers and depths of pixels, see surface_number.glsl
+uniform vec2 tolerance;      // of depths on one surface: value at depth 0, and slope over depth
+uniform ivec4 area;          // left, bottom, right and top pixel that may be read
 out vec4 pixel_colour;
 
-// Less than what another number counts.
+// The tolerance at a depth, always below the misfit of two surface numbers.
 float allowed_at(float depth) {
     return min(tolerance.x + tolerance.y * depth, 0.5);
 }
@@ -29,7 +29,7 @@ vec2 surface_at(ivec2 at) {
     return vec2(stored.r, stored.g + stored.b / 255.0);
 }
 
-// 0 where two numbers are of one surface, else 1. From 190 on they are of skin, and change slowly.
+// 0 if two numbers belong to one surface, else 1. Numbers from 190 belong to skin, and vary slowly.
 vec4 differ(vec4 first, float second) {
     vec4 allowed = mix(vec4(0.5), vec4(12.5), step(190.0 / 255.0, min(first, second))) / 255.0;
     return step(allowed, abs(first - second));
@@ -58,7 +58,7 @@ uniform sampler2DMS sample_depths;
 uniform vec2 depth_range;  // as in surface_number.glsl
 const ivec2 WAYS[5] = ivec2[](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
-// How badly two places fit one surface: below 1 by their depths, else by their numbers.
+// How badly two samples fit to one surface: the difference of depths, plus 1 if the numbers differ.
 float misfit(vec2 first, vec2 second) {
     return abs(first.y - second.y) + differ(vec4(first.x), second.x).x;
 }

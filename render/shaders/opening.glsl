@@ -1,14 +1,15 @@
-// How much light gets through an opening in a skin to a part: FILLED by it, or BEHIND it; see
-// opening.py. Reaches and shares are chosen by eye.
+// Light that reaches a part through an opening in the skin. FILLED: the part fills the opening, like an
+// eyeball. BEHIND: the part lies behind it, like teeth. See opening.py. Constants are chosen by eye.
 
 #if defined(FILLED)
 
-// As the opening has it: x from -1 to 1 between the corners, y upward, both in half its width.
+// Planes that give coordinates in the opening: x from -1 to 1 between the corners, and y upward. The
+// unit is half the opening's width.
 uniform vec4 opening_x;
 uniform vec4 opening_y;
-uniform vec4 upper_lid;  // its y, of 1, x, x^2, x^3
+uniform vec4 upper_lid;  // coefficients of y for 1, x, x^2, x^3
 uniform vec4 lower_lid;
-// Reach of the shade of lids and corners, in half the width, and the share of light lost there.
+// Width of the shade of lids and corners, in half widths of the opening, and fraction of lost light.
 const float REACH_ABOVE = 0.34, REACH_BELOW = 0.10, REACH_ASIDE = 0.52;
 const float SHADE_ABOVE = 0.72, SHADE_BELOW = 0.35, SHADE_ASIDE = 0.42;
 
@@ -26,15 +27,15 @@ float light_let_in(vec3 place) {
 #else
 
 uniform vec3 rim[RIM_POINTS];  // clockwise seen from outside, the upper half first
-const float GAIN = 4.6;     // light comes in several times, thrown back by teeth and cheeks
-const float LEAST = 0.12;   // of light, in a mouth that is nearly shut
-const float TURNED = 0.35;  // how much the side to which the surface is turned counts
-// Reach of the shade of the upper lip and of the corners, in widths of the opening, and the share
-// of light that is lost there.
+const float GAIN = 4.6;     // amplification, because teeth and cheeks reflect light several times
+const float LEAST = 0.12;   // fraction of light in a mouth that is nearly shut
+const float TURNED = 0.35;  // weight of the surface's orientation
+// Width of the shade of the upper lip and of the corners, in widths of the opening, and fraction of
+// light that is lost in it.
 const float REACH_ABOVE = 0.17, REACH_ASIDE = 0.26;
 const float SHADE_ABOVE = 0.5, SHADE_ASIDE = 0.6;
 
-// From a place to the nearest point of the upper half of the rim.
+// Distance of a point from the upper half of the rim.
 float distance_above(vec3 place) {
     float nearest = 1e12;
     for (int i = 0; i < RIM_POINTS / 2; i++) {
@@ -46,8 +47,8 @@ float distance_above(vec3 place) {
     return sqrt(nearest);
 }
 
-// The share of all directions in which the opening is seen, by its outline (J. H. Lambert 1760,
-// Photometria), weighted by their cosine to the way out.
+// Fraction of light that arrives at a point. It depends on the form factor of the opening, computed
+// from its outline (J. H. Lambert 1760, Photometria).
 float light_let_in(vec3 place, vec3 normal) {
     vec3 sum = vec3(0.0), outward = vec3(0.0), middle = vec3(0.0);
     vec3 from = rim[RIM_POINTS - 1] - place;
@@ -68,14 +69,14 @@ float light_let_in(vec3 place, vec3 normal) {
     float above = distance_above(place) / (REACH_ABOVE * width);
     float aside = min(distance(place, rim[0]), distance(place, rim[RIM_POINTS / 2])) / (REACH_ASIDE * width);
     open *= (1.0 - SHADE_ABOVE * exp2(-above * above)) * (1.0 - SHADE_ASIDE * exp2(-aside * aside));
-    // Out of the mouth there is light all around.
+    // Points in front of the mouth get all light.
     float out_by = -dot(middle, outward) / max(length(outward), 1e-9);
     return mix(open, 1.0, smoothstep(-0.04, 0.10, out_by / width));
 }
 
 #endif
 
-// What gets in has met red flesh.
+// Colours light that red flesh has reflected.
 vec3 reddened(float light) {
     return pow(vec3(light), vec3(0.80, 1.08, 1.12));
 }

@@ -1,4 +1,4 @@
-// Depth only, seen from the key light; SHELLS: of dense hair, seen from the eye.
+// Depths only: of all surfaces, seen from the key light; with SHELLS of dense hair, seen from the camera.
 
 #if defined(VERTEX_STAGE)
 
@@ -8,7 +8,7 @@ uniform mat4 to_clip;
 #include "shell_layers.glsl"
 in vec3 in_way;
 uniform int layers;
-const float BELOW = 0.9;  // of the way to the lowest layer, which will be drawn above this depth
+const float BELOW = 0.9;  // fraction of the lowest layer's height, so that this layer is not hidden
 #endif
 
 void main() {
@@ -22,7 +22,7 @@ void main() {
 #elif defined(FRAGMENT_STAGE)
 
 #if defined(SHELLS)
-out vec4 pixel_colour;  // blended by nothing
+out vec4 pixel_colour;  // ignored by the blend function
 
 void main() {
     pixel_colour = vec4(0.0);

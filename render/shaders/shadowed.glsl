@@ -1,11 +1,11 @@
-// How much of the key light gets to a place, by the map of shadow.py.
+// Look-ups in the shadow map of shadow.py.
 
 uniform sampler2DShadow shadow_map;
 
-// 1 where the key light reaches, 0 in its shadow; place: in the shadow map.
+// 1 in the key light, 0 in its shadow; place: point in the space of the shadow map.
 float key_lightness(vec3 place) {
-    // The mean of 3 x 3 bilinear tests, by four: each stands between two of them, where the test's
-    // own blend weighs them (after I. Castaño's "Shadow mapping summary", 2013).
+    // The mean of 3 x 3 bilinear depth tests, by four look-ups between them, where bilinear filtering
+    // gives the right weights (after I. Castaño's "Shadow mapping summary", 2013).
     float size = float(textureSize(shadow_map, 0).x), texel = 1.0 / size;
     vec2 corner = floor(place.xy * size + 0.5);
     vec2 part = place.xy * size + 0.5 - corner;
@@ -21,11 +21,11 @@ float key_lightness(vec3 place) {
 }
 
 #if defined(LIFTED)
-// A place further above its triangle, if that is steeper toward the light than its normals say: few
-// triangles that are shaded as a round surface would else be shadowed in stripes.
-// place: in the shadow map; lift: how far it stands above the surface already, along the normal.
+// Moves a point farther above its triangle if the triangle is steeper to the light than its normals
+// say. Otherwise large triangles that are shaded as a round surface would have stripes of shadow.
+// place: point in the space of the shadow map, already moved by `lift` along the normal.
 vec3 above_triangle(vec3 place, vec3 lift) {
-    const float REACH = 2.0;  // of the look-up, to each side [texels]
+    const float REACH = 2.0;  // [texels] radius of the look-up
     vec3 surface = place - lift;
     vec3 across = normalize(cross(dFdx(surface), dFdy(surface)));
     across = dot(across, lift) < 0.0 ? -across : across;

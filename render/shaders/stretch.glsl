@@ -1,4 +1,4 @@
-// A picture over the whole viewport: a label, or a scene of fewer pixels, which is enlarged.
+// Draws a texture over the whole viewport: a label, or a scene that is enlarged.
 
 #if defined(VERTEX_STAGE)
 

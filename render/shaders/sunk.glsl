@@ -1,7 +1,7 @@
-// The depth of parts under skin that is cut open: in their place, but as deep as if they were farther
-// off, so that whole skin hides them.
+// Greater depths for parts in front of a cut, so that opaque skin hides them even where they come out
+// of it. Positions on the screen do not change.
 
-uniform float cut_width;
+uniform float cut_width;  // greatest distance that is added
 
 float sunk_depth(vec4 position) {
     float beyond = clamp(dot(cut, position), 0.0, cut_width);

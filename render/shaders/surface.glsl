@@ -1,10 +1,16 @@
-// Skin and rigid parts.
-// One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
-// stage), SPLITS (colour by a count per triangle), SPLIT_WIRES (of its outline), COLOURED (vertex colours), TEXTURED (skin's albedo
-// from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones of
-// three sides; pixels take as much of them as they cover), FIBRES (striation), TRANSLUCENT (skin that
-// shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
-// as its vertices have it; MOUTH: and may come into its mouth), TRIANGLES (numbered singly), FILLED or BEHIND (parts to which light comes through an opening; opening.glsl).
+// Skin and rigid parts. These defines choose a variant:
+// FLAT, GOURAUD or PIXEL: light is computed per triangle, vertex or pixel.
+// WIREFRAME: outlines of triangles; adds the geometry stage.
+// SPLITS: colour by a number per triangle. SPLIT_WIRES: outlines in this colour.
+// COLOURED: vertex colours. TEXTURED: albedo from a texture.
+// SHADOWS: shadows in the key light. AROUND: ambient light by nine coefficients.
+// BUMPS, FINE: furrows and fine shape of the skin (bumps.glsl); need PIXEL.
+// STRANDS: thin strands with three sides, blended by the fraction of a pixel that they cover.
+// FIBRES: striation (fibres.glsl).
+// TRANSLUCENT: skin that shows parts below it. SUNK: these parts, hidden where skin is opaque.
+// FADED: skin that fades by vertex. MOUTH: the fading part may overlap the mouth on the screen.
+// TRIANGLES: each triangle has its own surface number.
+// FILLED, BEHIND: parts that get light through an opening (opening.glsl).
 
 #include "lighting.glsl"
 #if defined(FILLED) || defined(BEHIND)
@@ -52,7 +58,7 @@ uniform float sharpness;
 #define BUMP_VARYING
 #endif
 #if defined(SHADOWS) && !defined(COLOURED)
-#define LIFTED  // parts are so fine that their normals are those of their triangles
+#define LIFTED  // for skin only: parts have so small triangles that normals fit them
 #define SHADOW_VARYING vec3 light_place; vec3 lift;
 #elif defined(SHADOWS)
 #define SHADOW_VARYING vec3 light_place;
@@ -60,7 +66,7 @@ uniform float sharpness;
 #define SHADOW_VARYING
 #endif
 #if defined(STRANDS)
-#define STRAND_VARYING vec2 strand;  // half its thickness, and half of what is drawn [pixels]
+#define STRAND_VARYING vec2 strand;  // radius of the strand, and radius of the drawn prism [pixels]
 #else
 #define STRAND_VARYING
 #endif
@@ -94,11 +100,11 @@ in vec2 in_uv;
 #endif
 #if defined(BUMPS)
 in vec2 in_bumps;
-in vec3 in_u_gradient;  // of texture coordinates along the surface [1/mm]
+in vec3 in_u_gradient;  // gradients of texture coordinates along the surface [1/mm]
 in vec3 in_v_gradient;
 #endif
 #if defined(FADED)
-in vec2 in_fade;  // the share of skin that shows; below 0 its inner side does not
+in vec2 in_fade;  // opacity of the skin; a number that is negative where the inner side is hidden
 #endif
 #if defined(FIBRES)
 in vec2 in_fibre;  // across and along the fibres [mm]
@@ -106,19 +112,19 @@ in vec2 in_fibre;  // across and along the fibres [mm]
 uniform mat4 model_view;
 uniform mat4 projection;
 #if defined(SHADOWS)
-uniform mat4 shadow_matrix;   // view space -> place in the shadow map
-// A receiver stands above itself, lest it shadow itself: by a little, and by as much as its slope
-// rises within the reach of the look-up. Here its slope is that of its normal.
+uniform mat4 shadow_matrix;   // from view space to the space of the shadow map
+// Shadow look-ups are moved above the surface, so that it does not shadow itself: by a small offset,
+// and by the height that a surface with this normal rises within the radius of the look-up.
 uniform float shadow_offset;
 uniform float shadow_reach;
 #endif
 #if defined(SUNK)
-uniform vec4 cut;  // plane, view space; in front of it the skin is whole
+uniform vec4 cut;  // plane, view space; in front of it the skin is opaque
 #include "sunk.glsl"
 #endif
 #if defined(STRANDS)
-uniform float half_strand;   // of a strand's thickness
-uniform float pixel_size;  // at distance 1
+uniform float half_strand;  // radius of a strand
+uniform float pixel_size;   // size of a pixel at distance 1
 #endif
 out Surface { VARYINGS } surface;
 
@@ -126,13 +132,13 @@ void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal);
 #if defined(STRANDS)
-    // Three sides hold a circle of half their radius: that is the strand, and a pixel around it.
+    // A triangle contains a circle of half its radius, which is the strand and a pixel around it.
     bool is_tip = dot(in_normal, in_normal) == 0.0;
     if (is_tip) normal = vec3(0.0);
     vec3 middle = position.xyz - half_strand * normal;
     float pixel = -pixel_size * position.z, drawn = 2.0 * (half_strand + pixel);
     position.xyz = middle + drawn * normal;
-    // Seen from all around, three sides are 0.83 of a circle wide.
+    // On average over all directions, a triangle is 0.83 times as wide as the circle around it.
     surface.strand = vec2(is_tip ? 0.0 : 0.83 * half_strand, drawn) / pixel;
 #endif
     surface.position = position.xyz;
@@ -152,7 +158,7 @@ void main() {
     surface.colour = in_colour;
 #endif
 #if defined(BEHIND)
-    // Not in each pixel: parts behind lips have many vertices, and few are seen at a time.
+    // Per vertex: parts behind lips have many vertices, of which few are visible at a time.
     surface.let_in = reddened(light_let_in(surface.position, normal));
 #endif
 #if defined(FADED)
@@ -178,7 +184,7 @@ void main() {
 #endif
     gl_Position = projection * position;
 #if defined(STRANDS)
-    vec4 own = projection * vec4(middle, 1.0);  // only as deep as it is
+    vec4 own = projection * vec4(middle, 1.0);  // the depth of the strand's axis
     gl_Position.z = own.z / own.w * gl_Position.w;
 #endif
 #if defined(SUNK)
@@ -210,7 +216,7 @@ void main() {
     vec3 height = is_in_front
         ? area / max(vec3(length(a), length(b), length(c)), 1e-6)
         : vec3(1e6);
-    // Lines fade where triangles are so small that they would be nothing but lines.
+    // Lines fade on triangles that are so small that lines would cover them.
     float strength = clamp(min(min(height.x, height.y), height.z) / FADING_HEIGHT, 0.4, 1.0);
     for (int i = 0; i < 3; i++) {
         drawn.position = corner[i].position;
@@ -262,16 +268,16 @@ uniform vec4 wire_colour;
 in Surface { VARYINGS } surface;
 #endif
 #if defined(COLOURED)
-uniform float least_mirrored;  // of the highlight, where the part is black
+uniform float least_mirrored;  // fraction of the highlight that stays where the part is black
 #else
 uniform vec3 inner_albedo;
 #endif
 #if defined(TEXTURED)
 uniform sampler2D albedo_texture;
-uniform sampler2D around_texture;  // how light the skin is around
+uniform sampler2D around_texture;  // mean lightness of the skin around
 uniform vec3 lightness_weights;
-uniform float redness;  // of most of the picture: red over green
-uniform float occlusion;  // how much the ambient_occlusion in the picture's alpha counts, 0 or 1
+uniform float redness;    // median ratio of red to green light of the texture
+uniform float occlusion;  // strength of the ambient occlusion in the texture's alpha, 0 or 1
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
@@ -279,7 +285,7 @@ uniform vec3 albedo;
 uniform usampler2D triangle_values;
 uniform vec3 split_palette[6];
 
-// How many splits the triangle has.
+// Number of splits of the triangle's edges.
 int split_count() {
     ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
     return int(texelFetch(triangle_values, texel, 0).r);
@@ -296,7 +302,7 @@ int split_count() {
 #endif
 #if defined(TRANSLUCENT)
 uniform float opacity;
-uniform vec4 cut;  // plane, view space; in front of it the skin is whole
+uniform vec4 cut;  // plane, view space; in front of it the skin is opaque
 uniform float cut_width;
 const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #endif
@@ -304,7 +310,7 @@ const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 layout(location = 0) out vec4 pixel_colour;
 layout(location = 1) out vec4 pixel_surface;
 
-// How open to light from all around.
+// 1 where all ambient light arrives.
 float ambient_occlusion = 1.0;
 
 vec3 front_albedo() {
@@ -312,7 +318,7 @@ vec3 front_albedo() {
     vec3 front = surface.colour;
 #elif defined(TEXTURED)
     vec4 painted = texture(albedo_texture, surface.uv);
-    painted *= painted;  // see texture.py
+    painted *= painted;  // the texture holds square roots, see texture.py
     vec3 front = painted.rgb;
     ambient_occlusion = mix(1.0, painted.a, occlusion);
 #else
@@ -331,10 +337,10 @@ vec3 front_albedo() {
 }
 
 #if defined(MOUTH)
-uniform vec3 mouth_rim[RIM_POINTS];  // of the lips, clockwise seen from outside
+uniform vec3 mouth_rim[RIM_POINTS];  // outline of the lips, clockwise seen from outside
 
-// Whether a place is seen through the open lips: their outline goes clockwise around it. The
-// outline is taken wider, since lips hide what is beside their opening.
+// Whether a point is visible through the open lips: their outline runs clockwise around it on the
+// screen. The outline is enlarged, which is safe, because lips hide points beside their opening.
 bool is_in_mouth(vec3 place) {
     const float GROWTH = 1.4;
     vec3 middle = vec3(0.0);
@@ -358,7 +364,7 @@ bool is_in_mouth(vec3 place) {
 #endif
 
 #if !defined(GOURAUD)
-// Toward the viewer, on either side of the surface.
+// The unit normal toward the viewer, on either side of the surface.
 vec3 shading_normal() {
 #if defined(FLAT)
     return normalize(cross(dFdx(surface.position), dFdy(surface.position)));
@@ -375,8 +381,9 @@ void main() {
     float solid = 1.0;
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, surface.fade.x);
-    // From below one would look into the neck. A chin that goes down may take the front of a neck
-    // into the mouth, where nothing would show behind it. To discard costs early depth tests.
+    // The inner side of the neck is hidden, else a view from below would show it. A chin that moves
+    // down may pull the front of the neck in front of the mouth, where it would leave a hole.
+    // Only MOUTH discards, because discarding disables early depth tests.
     bool is_hidden = !gl_FrontFacing && (solid < 1.0 || surface.fade.y < 0.0);
 #if defined(MOUTH)
     bool in_mouth = (is_hidden || solid < 1.0) && is_in_mouth(surface.position);
@@ -392,7 +399,7 @@ void main() {
     float facing = abs(surface.facing);
 #else
 #if defined(FLAT)
-    vec3 to_eye = surface.to_eye;  // one for the whole triangle
+    vec3 to_eye = surface.to_eye;  // constant on a triangle
 #else
     vec3 to_eye = normalize(-surface.position);
 #endif
@@ -411,11 +418,12 @@ void main() {
     float facing = dot(normal, to_eye);
 #endif
 #if defined(TEXTURED)
-    // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
+    // Lips are redder than the skin around them, and moist. The threshold, chosen by eye, leaves out
+    // red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 2.4 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
-    // Pores and hairs, darker than the skin around them, break the highlight; and it is weaker in
-    // hollows than on raised skin. On dark skin only a plain highlight would be seen.
+    // Pores and hairs, which are darker than the skin around them, weaken the highlight, and so do
+    // hollows. Without this, dark skin would show nothing but a smooth highlight.
     float shown_here = dot(front, lightness_weights);
     float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
@@ -437,9 +445,9 @@ void main() {
     float lightness = 1.0;
 #endif
 #if defined(COLOURED)
-    // Deep in a mouth parts are painted dark: no more light gets there to be mirrored.
+    // Deep in a mouth, where little light arrives, vertex colours are dark; so highlights are weaker.
     lit.specular *= max(front.r, least_mirrored);
-    // Lids and lips are thin, and shade a small area: light of a large lamp gets around them.
+    // Lids and lips are thin, so light of a large lamp reaches around them.
     lightness = mix(0.6, 1.0, lightness);
 #endif
     vec3 light = lit_colour(lit, front, lightness, subsurface, ambient_occlusion);
@@ -449,16 +457,16 @@ void main() {
     light *= surface.let_in;
 #endif
 #if defined(COLOURED)
-    light *= 0.96;  // parts sit in sockets and mouths, where less light gets in
+    light *= 0.96;  // less light reaches parts in sockets and mouths
 #else
-    // Skin that only just turns away is the outline, where front and back have the same depth: it
-    // keeps its colour, or dark specks of the inner side would come through there.
+    // Back faces that are nearly edge-on lie on the outline, where front and back have equal depths.
+    // They get the light of the front, else dark specks of the inner side would show there.
     float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
     light = mix(light, inner_albedo * inner, inwardness);
 #endif
     vec3 shown = display(light);
 #if defined(STRANDS)
-    pixel_surface = vec4(0.0);  // invisible, so that of what is behind stays
+    pixel_surface = vec4(0.0);  // transparent, so the number of the surface behind stays
 #else
     pixel_surface = surface_and_depth(RISE);
 #endif
@@ -474,8 +482,8 @@ void main() {
     shown = mix(shown, wire.rgb, wire.a * surface.wire_strength * coverage);
 #endif
 #if defined(STRANDS)
-    // A normal is a place in the strand's section, and changes only across the strand. Coverage falls
-    // off over a pixel (Gupta, Sproull 1981, "Filtering edges for gray-scale displays").
+    // The normal is a position in the strand's cross-section, and changes only across the strand.
+    // Coverage falls off over a pixel (Gupta, Sproull 1981, "Filtering edges for gray-scale displays").
     vec3 n = surface.normal, by_x = dFdx(n), by_y = dFdy(n), change = by_x * by_x + by_y * by_y;
     vec2 across = change.x > change.y ? vec2(by_x.x, by_y.x) : vec2(by_x.y, by_y.y);
     if (change.z > max(change.x, change.y)) across = vec2(by_x.z, by_y.z);
@@ -483,13 +491,13 @@ void main() {
     float cover = min(2.0 * wide, 1.0) * clamp(max(wide, 0.5) + 0.5 - aside, 0.0, 1.0);
     pixel_colour = vec4(shown, solid * cover);
 #elif defined(TRANSLUCENT)
-    // Where it is seen from the side there is more of it: so the outline of the face reads.
+    // Skin is more opaque where it is seen from the side, so the outline of the face shows.
     float from_cut = dot(cut, vec4(surface.position, 1.0));
     if (!gl_FrontFacing && from_cut < 0.0) discard;
     float grazing = 1.0 - clamp(facing, 0.0, 1.0);
     float veil = grazing * grazing * min(3.0 * opacity, 1.0);
     float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);
-    // The edge of the cut is as thick as skin.
+    // Skin near the cut shows fat, as wide as skin is thick.
     if (from_cut > 0.0) shown = mix(display(FAT * (0.35 + 0.65 * light)), shown, smoothstep(0.7, 1.0, from_cut / cut_width));
     pixel_colour = vec4(shown, solid * shown_share);
 #else
