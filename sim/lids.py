@@ -147,23 +147,13 @@ def _lid_vertices(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_share=np.array([gaze_share_of(ball.radius) for ball in eyeballs])
+        gaze_share=np.array([ball.gaze_share for ball in eyeballs])
         * opened_share_of(apertures),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
     )
     return vertices, hold
-
-
-def gaze_share_of(radius: float) -> float:
-    """Return the share of a gaze that lids follow, for an eyeball of this radius [mm].
-
-    On a larger ball lids move as far as on a human ball, because artists put larger balls behind
-    openings of human width.
-    """
-    most_radius = 12.8  # mm
-    return min(1.0, most_radius / radius)
 
 
 def opened_share_of(apertures: Floats64) -> Floats64:
@@ -272,7 +262,7 @@ def _one_eye(
     least_turn = 1e-3  # vertices that move less do not belong to the lids
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
-    overlap = weight * _pressed_turn(opening, least_opening)
+    overlap = weight * ball.gaze_share * _pressed_turn(opening / ball.gaze_share, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
 

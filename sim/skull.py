@@ -78,6 +78,16 @@ class Eyeball:
     centre: Floats64  # (3,)
     radius: float
 
+    @property
+    def gaze_share(self) -> float:
+        """Share of a gaze by which ball and lids turn.
+
+        Iris and lids of a larger ball move as far as on a human ball, because artists put larger
+        balls behind openings of human width.
+        """
+        most_radius = 12.8  # mm
+        return min(1.0, most_radius / self.radius)
+
 
 @dataclass(frozen=True)
 class Skull:
@@ -113,7 +123,7 @@ class Skull:
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """Motion of an eyeball that looks to the subject's left (+1) and up (+1)."""
-        most = math.radians(self.eyes.gaze_deg)
+        most = math.radians(self.eyes.gaze_deg) * eyeball.gaze_share
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
         return RigidMotion.about(eyeball.centre, yaw @ pitch)

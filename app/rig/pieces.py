@@ -89,7 +89,7 @@ def find_pieces(
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         role = _role_of(points, middle, head, near)
         found.append(FilePiece(number, group, role, middle, names[group[0]]))
-    return found
+    return _in_rows(found, rest)
 
 
 def _role_of(
@@ -165,6 +165,42 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
         if middle[1] < between < points[:, 1].max() + 5.0:
             return "tongue"
     return "upper_teeth" if middle[1] > between else "lower_teeth"
+
+
+def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
+    """Correct the roles of single teeth by the two rows that they form.
+
+    The rows of a stranger's mouth rise toward the molars more than the built-in ones, so that lower
+    molars can stand above the gap between the built-in rows.
+    """
+    widest = 15.0  # [mm] of a single tooth
+    teeth = [
+        place
+        for place, piece in enumerate(pieces)
+        if piece.role.endswith("_teeth") and np.ptp(rest[piece.vertices], axis=0)[0] < widest
+    ]
+    fewest = 8
+    if len(teeth) < fewest:
+        return pieces
+    middles = np.array([pieces[place].middle for place in teeth])
+    is_upper = np.array([pieces[place].role == "upper_teeth" for place in teeth])
+    most_passes = 10
+    for _ in range(most_passes):
+        if is_upper.all() or not is_upper.any():
+            return pieces
+        # Both rows rise by the same slopes backward and aside, at different heights.
+        matrix = np.column_stack([middles[:, [0, 2]], is_upper, ~is_upper])
+        slopes = np.linalg.lstsq(matrix, middles[:, 1], rcond=None)[0]
+        heights = middles[:, 1] - middles[:, [0, 2]] @ slopes[:2]
+        before = is_upper
+        is_upper = heights > slopes[2:].mean()
+        if (is_upper == before).all():
+            break
+    rows = list(pieces)
+    for place, upper in zip(teeth, is_upper, strict=True):
+        role = "upper_teeth" if upper else "lower_teeth"
+        rows[place] = replace(pieces[place], role=role)
+    return rows
 
 
 def _extent(values: Floats64) -> float:

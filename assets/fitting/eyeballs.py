@@ -18,13 +18,16 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
     """Whether a piece (n, 3) is an eyeball near `centre`, or one of its layers (iris, cornea)."""
     if len(points) < FEWEST:
         return False
-    off = np.linalg.norm(points - centre, axis=1)
-    if np.quantile(off, 0.9) > 1.7 * radius:
-        return False
     low = points.min(axis=0)
     high = points.max(axis=0)
+    width, height, depth = high - low
+    off = np.linalg.norm(points - centre, axis=1)
+    if np.quantile(off, 0.9) > 1.7 * radius:
+        # Some makers' eyeballs are half as large again as those of people, and lie farther back.
+        is_ball = sphere_of(points, centre, radius)[0] is not centre
+        if not is_ball or depth < 0.5 * width:
+            return False
     aside = np.abs(0.5 * (low + high) - centre)[:2].max()
-    width, height, _ = high - low
     is_round = 0.6 < (width + 1e-9) / (height + 1e-9) < 1.7
     return bool(aside < 0.4 * radius and is_round and width > 0.3 * radius)
 
@@ -44,7 +47,8 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
     fitted = float(np.sqrt(size))
     off = np.abs(np.linalg.norm(points - middle, axis=1) - fitted)
     is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < 1.7
-    is_near = np.linalg.norm(middle - centre) < 0.6 * radius
+    # The lids hide how far back a larger ball reaches.
+    is_near = np.linalg.norm(middle - centre) < 0.6 * radius + max(fitted - radius, 0.0)
     return (middle, fitted) if is_ball and is_near else (centre, radius)
 
 

@@ -113,6 +113,7 @@ def incisor(maker: Maker) -> tuple[Points, Faces]:
 
 CASES = {
     "ball": (lambda maker: maker.ball("left", 1.0, 0.0), "eye_left"),
+    "large ball": (lambda maker: maker.ball("left", 1.5, -0.4), "eye_left"),
     "cornea": (lambda maker: maker.ball("right", 0.62, 0.45), "eye_right"),
     "iris": (lambda maker: maker.ball("left", 0.4, 0.62), "eye_left"),
     "teeth": (lambda maker: maker.part("teeth_lower"), "lower_teeth"),
@@ -143,6 +144,25 @@ def test_each_piece_gets_its_role(face, case):
     """Roles are found for eyes in layers, teeth with roots, a deep tongue, a beard and glasses."""
     make, role = CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
+
+
+def test_single_teeth_belong_to_their_row(face):
+    """Lower molars that stand above the gap between the built-in rows are still lower teeth."""
+    rows = {name: Maker(face).part(name)[0] for name in ("teeth_upper", "teeth_lower")}
+    front = rows["teeth_upper"][:, 2].max()
+    teeth, roles = [], []
+    for name, side in (("teeth_upper", 1.0), ("teeth_lower", -1.0)):
+        edge = rows[name][:, 1].min() if side > 0.0 else rows[name][:, 1].max()
+        for along in np.linspace(-1.0, 1.0, 10):
+            back = 35.0 * along**2
+            rise = 6.0 * along**2
+            place = (22.0 * along, edge + side * 4.0 + rise, front - 4.0 - back)
+            teeth.append(np.asarray(trimesh.creation.box((5.0, 8.0, 5.0)).vertices) + place)
+            roles.append("upper_teeth" if side > 0.0 else "lower_teeth")
+    box = np.asarray(trimesh.creation.box().faces)
+    faces = np.vstack([box + 8 * number for number in range(len(teeth))])
+    pieces = pieces_with(face, (np.vstack(teeth), faces))
+    assert [piece.role for piece in pieces] == roles
 
 
 def test_lines_have_the_names_of_the_file(face):

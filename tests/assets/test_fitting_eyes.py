@@ -111,22 +111,26 @@ def _ball(centre, radius):
     return centre + radius * unit.vertices, unit.faces
 
 
-def test_eyeballs_of_the_file_set_place_and_size():
-    """Eyes get the centre and size of the file's eyeballs; irises keep the face's size."""
+@pytest.mark.parametrize(("radius", "back"), [(14.1, 1.5), (18.0, 5.4)])
+def test_eyeballs_of_the_file_set_place_and_size(radius, back):
+    """Eyes get the centre and size of the file's eyeballs, also of balls half as large again.
+
+    Irises keep the face's size.
+    """
     head = assets.load("head")
     vertices = shape(head.vertices)
     faces = head.faces
     moved = shape(np.array([eye.centre for eye in head.eyes]))
-    moved += (0.0, 0.3, -1.5)
+    moved += (0.0, 0.3, -back)
     for centre in moved:
-        points, triangles = _ball(centre, 14.1)
+        points, triangles = _ball(centre, radius)
         faces = np.concatenate([faces, triangles + len(vertices)])
         vertices = np.concatenate([vertices, points])
     found = fit(Mesh(vertices, faces.astype(np.int32)), head.landmarks)
     for eye, old, centre in zip(found.eyes, head.eyes, moved, strict=True):
         wanted = found.to_millimetres.points(centre[None])[0]
         assert norm(eye.centre - wanted) < 0.3
-        assert eye.radius == approx(14.1 * found.to_millimetres.scale, abs=0.3)
+        assert eye.radius == approx(radius * found.to_millimetres.scale, abs=0.3)
         assert eye.iris_radius == approx(old.iris_radius, rel=0.1)
         part = next(part for part in found.parts if part.bone == f"eye_{eye.name}")
         check_part(part)

@@ -8,7 +8,9 @@ from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.sim.face_model import build_face_model
 from risorius.sim.lid_edges import COLUMNS, side_with_edges
-from risorius.sim.lids import gaze_share_of, raised_at_corners
+from risorius.sim.landmarks import Side
+from risorius.sim.lids import raised_at_corners
+from risorius.sim.skull import Eyeball
 from tests.sim.poses import both_sides, settled_displacement
 
 WHERE = np.linspace(0.0, 1.0, COLUMNS)
@@ -32,10 +34,11 @@ def test_a_level_lid_keeps_its_seam():
     assert_allclose(raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
 
 
-def test_lids_follow_a_gaze_on_a_large_ball_no_farther():
-    """A lid's motion does not grow on eyeballs larger than a human's."""
-    assert gaze_share_of(12.8) == 1.0
-    assert_allclose(gaze_share_of(16.2) * 16.2, gaze_share_of(12.8) * 12.8)
+def test_irises_and_lids_move_no_farther_on_a_large_ball():
+    """The way of a gaze along the surface does not grow on eyeballs larger than a human's."""
+    human, large = (Eyeball(Side.LEFT, np.zeros(3), radius) for radius in (12.8, 18.8))
+    assert human.gaze_share == 1.0
+    assert_allclose(large.gaze_share * large.radius, human.radius)
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):
