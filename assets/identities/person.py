@@ -30,6 +30,7 @@ from ..model import Eye, Head
 from ..norms import measures_of
 from ..smooth import smooth_step
 from .smiles import smiling
+from .sockets import without_ridges
 from .space import Identity, Sex, person_space, scores_of
 
 
@@ -86,7 +87,7 @@ def _made(identity: Identity) -> Person:
     askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, middle_width)
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
-    bent = _resting_face(known, bent, eyes, identity)
+    bent = without_ridges(_resting_face(known, bent, eyes, identity))
     lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
     vertices = lids_on_eyes(known, bent, eyes, lid_shares)
     neck = vertices[known.anatomy["menton"]], identity.sex

@@ -27,6 +27,7 @@ from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import load
 from risorius.assets.norms import NORMS, measures_of
 from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
+from risorius.geometry.directions import unit_vectors
 from tests.assets.checks import mirror_error
 from tests.sim.poses import inverted_triangles
 
@@ -38,6 +39,22 @@ PERSONS = (0, 1039)
 def person(request: pytest.FixtureRequest) -> Person:
     """A few persons."""
     return make_person(sample_identity(request.param))
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_no_ridge_runs_down_from_the_inner_brow(side):
+    """On person 19, skin bends by at most 12 degrees over an edge from inner brow to lid."""
+    person = person_called(19)
+    head = load("head")
+    edge = np.array([769, 571])  # vertices of the right brow and lid, and their neighbours
+    beside = np.array([570, 742])
+    if side == "left":
+        edge, beside = head.mirror[edge], head.mirror[beside]
+    brow, lid = person.vertices[edge]
+    along = unit_vectors(brow - lid)
+    sides = person.vertices[beside] - lid
+    one, other = unit_vectors(sides - (sides @ along)[:, None] * along)
+    assert np.degrees(np.arccos(-one @ other)) < 12.0
 
 
 def test_few_persons_lie_far_from_the_mean():

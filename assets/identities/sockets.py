@@ -1,0 +1,97 @@
+"""The steep skin between a person's inner brows and upper lids, without ridges.
+
+The modes move neighbours there apart by chance. Triangles of this skin are long. So a ridge along
+their edges is a wedge, light on one side and dark on the other.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from risorius.geometry.normals import vertex_normals
+
+from ...geometry.arrays import Floats64, Integers32
+from ...geometry.directions import unit_vectors
+from ..fitting.organs import EYE_LANDMARKS
+from ..loading import load
+
+
+class _Sockets(NamedTuple):
+    """The skin between upper lids and brows.
+
+    vertex: its vertices, (n,). bends: angles over edges down to the lids, from vertices, (E, V).
+    outward: directions of skin at these edges, (E, 3). pulls: how each vertex moves to flatten an
+    edge [mm/rad], (n, E).
+    """
+
+    vertex: Integers32
+    bends: Floats64
+    outward: Floats64
+    pulls: Floats64
+
+
+def without_ridges(vertices: Floats64) -> Floats64:
+    """Vertices of a face, shape (V, 3), without ridges from the inner brow down to the lid."""
+    sockets = _sockets()
+    x = vertices.copy()
+    usual_angle = 0.1  # [rad] of a ridge that nobody sees
+    rounds = 3  # an edge that was pulled in leaves a smaller ridge at its neighbours
+    for _ in range(rounds):
+        angles = (sockets.bends @ x * sockets.outward).sum(axis=1)
+        ridges = np.maximum(angles - usual_angle, 0.0)
+        x[sockets.vertex] -= sockets.pulls @ (ridges[:, None] * sockets.outward)
+    return x
+
+
+@lru_cache(maxsize=1)
+def _sockets() -> _Sockets:
+    """The sockets of the built-in head.
+
+    A bend over an edge is the hinge of Bergou and others 2006, "A quadratic bending model for
+    inextensible surfaces" (SGP). Pulls have the least sum of squares of bends and displacements.
+    """
+    head = load("head")
+    inner_count = 6  # points of a lid's row in its inner half; the outer half is a hood
+    stiffness = 0.015  # of displacements [rad²/mm²], relative to bends; chosen by eye
+    edges, wings = [], []
+    corners: dict[tuple[int, int], list[int]] = {}  # opposite to each edge
+    for a, b, c in head.faces.tolist():
+        for first, second, wing in ((a, b, c), (b, c, a), (c, a, b)):
+            corners.setdefault((min(first, second), max(first, second)), []).append(wing)
+    for side in EYE_LANDMARKS:
+        rows = [head.rings[f"eye_{row}_{side}"].tolist() for row in range(5)]
+        lid = {*rows[4][1:inner_count]}
+        around = {vertex for row in rows for vertex in row}
+        for edge, two in corners.items():
+            if len({*edge} & lid) == 1 and len({*edge} - around) == 1:
+                edges.append(edge)
+                wings.append(two)
+    x = head.vertices
+    bends = np.array([_hinge(x, *each) for each in zip(edges, wings, strict=True)])
+    normals = vertex_normals(x, head.faces)[np.array(edges)].sum(axis=1)
+    free = np.unique(edges)
+    near = bends[:, free]
+    held = near.T @ near + stiffness * np.eye(len(free))
+    return _Sockets(
+        vertex=free.astype(np.int32),
+        bends=bends,
+        outward=unit_vectors(normals),
+        pulls=np.linalg.solve(held, near.T),
+    )
+
+
+def _hinge(x: Floats64, edge: tuple[int, int], wings: list[int]) -> Floats64:
+    """Weights of vertices, (V,), whose sum is an angle [rad] times the edge's outward normal."""
+    a, b = edge
+    weights = np.zeros(len(x))
+    for wing in wings:
+        for near, far in ((a, b), (b, a)):
+            along, off = x[far] - x[near], x[wing] - x[near]
+            twice = float(np.linalg.norm(np.cross(along, off)))
+            cotangent = along @ off / twice
+            weights[far] += cotangent
+            weights[wing] -= cotangent
+    return np.asarray(weights / np.linalg.norm(x[b] - x[a]))
