@@ -147,8 +147,7 @@ def _lid_vertices(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_share=np.array([ball.gaze_share for ball in eyeballs])
-        * opened_share_of(apertures),
+        gaze_share=np.array([ball.gaze_share for ball in eyeballs]) * opened_share_of(apertures),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,

@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.sim.face_model import build_face_model
-from risorius.sim.lid_edges import COLUMNS, side_with_edges
 from risorius.sim.landmarks import Side
+from risorius.sim.lid_edges import COLUMNS, side_with_edges
 from risorius.sim.lids import raised_at_corners
 from risorius.sim.skull import Eyeball
 from tests.sim.poses import both_sides, settled_displacement
