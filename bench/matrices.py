@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib.metadata import version
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
 import numpy as np
@@ -22,31 +22,16 @@ from risorius.app.extras import needed
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.refine.mesh import threads
 
-from .refine import Load, Points, interleaved, load_of
+from .refine import Load, Pair, Points, load_of, timed_pair
 from .report import processor, table
 
 SIZES = ("2k", "20k", "200k", "1M")
 """The meshes of a run by default."""
 
 
-class Row(NamedTuple):
-    """The times of ours and of one rival on one mesh."""
-
-    mesh: str
-    rival: str
-    triangles: int
-    """Triangles of the refined mesh."""
-    ours: float
-    """Time of a frame, normals included, median [ms]."""
-    theirs: float
-    """Time of a rival's frame, median [ms]."""
-    gain: float
-    """Ratio of the rival's time to ours in a pair, median of the pairs."""
-
-
 def measure(
     sizes: Sequence[str], seconds: float, progress: Callable[[str], object] = lambda _: None
-) -> list[Row]:
+) -> list[Pair]:
     """Time our refiner and each rival on meshes of these sizes, for about `seconds` each.
 
     Raises UserError without libigl.
@@ -60,22 +45,13 @@ def measure(
         splits = np.ones(edge_count, dtype=np.uint8)
         fixed = refine.create("kahler", load.faces, load.rest, splits=splits)
         for rival, call in _rivals(load, igl):
-            ours = partial(_all_frames, load, fixed.refine)
-            theirs = partial(_all_frames, load, call)
-            spent = float(interleaved([ours, theirs], 1).sum())
-            fewest_pairs = 5
-            pairs = max(round(0.5 * seconds / spent), fewest_pairs)
-            times = 1e3 * interleaved([ours, theirs], pairs) / len(load.frames)
-            median_of_ours, median_of_theirs = (float(each) for each in np.median(times, axis=0))
-            gain = float(np.median(times[:, 1] / times[:, 0]))
-            found = median_of_ours, median_of_theirs, gain
-            rows.append(Row(size, rival, len(load.faces), *found))
+            rows.append(timed_pair(load, rival, [call, fixed.refine], 0.5 * seconds))
     return rows
 
 
-def report(rows: Sequence[Row]) -> str:
+def report(rows: Sequence[Pair]) -> str:
     """The text to print."""
-    columns = "mesh:<6|rival:<20|triangles:10d|ours ms:10.3f|theirs ms:11.3f|gain:7.2f"
+    columns = "mesh:<6|rival:<20|triangles:10d|theirs ms:11.3f|ours ms:10.3f|gain:7.2f"
     versions = ", ".join(f"{name} {version(name)}" for name in ("libigl", "scipy", "numba"))
     return "\n".join(
         [
@@ -86,11 +62,6 @@ def report(rows: Sequence[Row]) -> str:
             *table(columns, rows),
         ]
     )
-
-
-def _all_frames(load: Load, call: Callable[[Points], object]) -> None:
-    for frame in load.frames:
-        call(frame)
 
 
 def _rivals(load: Load, igl: Any) -> Iterator[tuple[str, Callable[[Points], object]]]:

@@ -22,7 +22,7 @@ def test_pairs():
     """Each compared method has a row, and its gain fits its times."""
     pytest.importorskip("igl")
     rows = matrices.measure(["2k"], 0.1)
-    assert [row.rival for row in rows] == ["libigl, loop_matrix", "numba, a plain loop"]
+    assert [row.method for row in rows] == ["libigl, loop_matrix", "numba, a plain loop"]
     for row in rows:
         assert abs(row.triangles - 2000) < 100
         assert 0.05 < row.gain < 20.0

@@ -14,10 +14,10 @@ def test_pairs(monkeypatch):
     """
     monkeypatch.setattr(threads.threads, "THREAD_COUNT", 2)
     rows = threads.measure(["2k"], 0.1)
-    assert [row.rule for row in rows] == ["paper's rule", "window's look"]
+    assert [row.method for row in rows] == ["paper's rule", "window's look"]
     for row in rows:
         assert abs(row.triangles - 2000) < 100
-        assert 0.0 < row.alone < 1000.0
+        assert 0.0 < row.first < 1000.0
         assert 0.1 < row.gain < 10.0
     assert threads.threads.THREAD_COUNT == 2
     assert "by 2, in pairs" in threads.report(rows)
