@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..motion.life import HEAD_RANGES
+from ..control_names.angles import DEGREES
 from .degrading import Degradation
 from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
 
@@ -75,7 +75,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
     controls = _two_sided(table, sides, controls, face.one_sided)
     for angle in ("yaw", "pitch", "roll"):
         degrees = getattr(table.head, angle) * _bounded_normal(heads)
-        controls[f"head_{angle}"] = degrees / HEAD_RANGES[f"head_{angle}"]
+        controls[f"head_{angle}"] = degrees / DEGREES[f"head_{angle}"]
     aside = [
         getattr(table.eyes, way) * _bounded_normal(heads) for way in ("horizontal", "vertical")
     ]

@@ -25,8 +25,9 @@ from risorius.assets.identities import (
     wearing,
 )
 
+from ..control_names.angles import GAZE
 from ..motion import SETTLING
-from ..motion.life import EYE_RANGE, looking_at
+from ..motion.life import looking_at
 from ..passes.camera import CameraLabels
 from ..passes.labels import Labelled
 from ..passes.passes import Passes
@@ -186,7 +187,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     if sample.gaze is None:
         eyes = looking_at(scene.face, camera.eye)["eyes"]
     else:
-        aside, up = (round(degrees / EYE_RANGE, 4) for degrees in sample.gaze)
+        aside, up = (round(degrees / GAZE, 4) for degrees in sample.gaze)
         eyes = {"gaze_horizontal": aside, "gaze_vertical": up}
     scene.pose({**sample.controls, **eyes})
     scene.step(SETTLING)

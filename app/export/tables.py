@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..control_names.angles import DEGREES
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from ..rig.curves import as_seen, shape_curves
@@ -55,21 +56,22 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     still = np.zeros(clip.frame_count)
     # Live Link Face begins names with a capital: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
-    # Angles of controls at 1, in radians. ARKit's angles are positive to the subject's right and
-    # down, and our controls to the left and up. ARKit's roll is positive to the right shoulder, and
-    # the axes of eyes that look straight ahead point OUTWARD.
+    # ARKit's angles [rad] are positive to the subject's right and down, and our controls to the
+    # left and up. ARKit's roll is positive to the right shoulder, and the axes of eyes that look
+    # straight ahead point OUTWARD.
     angle_columns = {
-        "HeadYaw": ("head_yaw", -np.radians(45.0)),
-        "HeadPitch": ("head_pitch", -np.radians(30.0)),
-        "HeadRoll": ("head_roll", -np.radians(30.0)),
-        "LeftEyeYaw": ("gaze_horizontal_left", -np.radians(30.0)),
-        "LeftEyePitch": ("gaze_vertical_left", -np.radians(30.0)),
-        "LeftEyeRoll": ("", 0.0),
-        "RightEyeYaw": ("gaze_horizontal_right", -np.radians(30.0)),
-        "RightEyePitch": ("gaze_vertical_right", -np.radians(30.0)),
-        "RightEyeRoll": ("", 0.0),
+        "HeadYaw": "head_yaw",
+        "HeadPitch": "head_pitch",
+        "HeadRoll": "head_roll",
+        "LeftEyeYaw": "gaze_horizontal_left",
+        "LeftEyePitch": "gaze_vertical_left",
+        "LeftEyeRoll": "",
+        "RightEyeYaw": "gaze_horizontal_right",
+        "RightEyePitch": "gaze_vertical_right",
+        "RightEyeRoll": "",
     }
-    for name, (control, radians) in angle_columns.items():
+    for name, control in angle_columns.items():
+        radians = -math.radians(DEGREES.get(control, 0.0))
         outward = math.radians(OUTWARD.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0))
         columns[name] = radians * lowest.get(control, still) - outward
     with part.open("w", newline="", encoding="utf-8") as file:

@@ -30,17 +30,15 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
+from ..control_names.angles import DEGREES, GAZE
 from ..scenes import Face, Scene
 
 Values = dict[str, float]
 Place = tuple[float, float]  # to the left and up [degrees]
 
 
-EYE_RANGE = 30.0  # [degrees] at gaze = 1
-
-# Greatest idle motion of the head, and the angle of its controls at 1 [degrees].
+# Greatest idle motion of the head [degrees].
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
-HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
 NOD = 4.0  # [degrees] that the head turns down for a fully open jaw
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, without a common period
 
@@ -66,10 +64,10 @@ class Life:
         return {
             "lids": _both(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
             "eyes": {
-                **_both("gaze_horizontal", across / EYE_RANGE),
-                **_both("gaze_vertical", along / EYE_RANGE),
+                **_both("gaze_horizontal", across / GAZE),
+                **_both("gaze_vertical", along / GAZE),
             },
-            "head": {name: most * share / HEAD_RANGES[name] for (name, most), share in strays},
+            "head": {name: most * share / DEGREES[name] for (name, most), share in strays},
         }
 
     def _random(self, what: int, number: int) -> np.random.Generator:
@@ -177,7 +175,7 @@ class Idle:
             parts[part] = {**own, **sums}
         if "head" in parts:
             nod = NOD * min(opening, 0.5)  # no syllable opens the mouth farther
-            parts["head"]["head_pitch"] -= nod / HEAD_RANGES["head_pitch"]
+            parts["head"]["head_pitch"] -= nod / DEGREES["head_pitch"]
         return {
             name: value
             for part in parts.values()
@@ -209,10 +207,10 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     for side, centre in centres.items():
         for way, angle in zip(("horizontal", "vertical"), _angles(seen - centre), strict=True):
             angle = min(max(share * angle, -EYES_MOST), EYES_MOST)
-            eyes[f"gaze_{way}_{side}"] = angle / EYE_RANGE
+            eyes[f"gaze_{way}_{side}"] = angle / GAZE
     head = {
-        "head_yaw": turn / HEAD_RANGES["head_yaw"],
-        "head_pitch": rise / HEAD_RANGES["head_pitch"],
+        "head_yaw": turn / DEGREES["head_yaw"],
+        "head_pitch": rise / DEGREES["head_pitch"],
     }
     return {"eyes": eyes, "head": head}
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
+from ..control_names.angles import DEGREES
 from .names import ARKIT
 
 Value = TypeVar("Value", float, Floats64)
@@ -42,19 +43,15 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     Values are not cut off at the limits of controls.
     """
     controls: dict[str, Value] = {}
-    # Name and value for a degree: at 1 a neck turns as far as it can without the shoulders.
-    controls_of_angles = {
-        "head_yaw": ("head_yaw", 0.022222),
-        "head_pitch": ("head_pitch", 0.033333),
-        "head_roll": ("head_roll", 0.033333),
-        "eye_yaw_left": ("gaze_horizontal_left", 0.033333),
-        "eye_yaw_right": ("gaze_horizontal_right", 0.033333),
-        "eye_pitch_left": ("gaze_vertical_left", 0.033333),
-        "eye_pitch_right": ("gaze_vertical_right", 0.033333),
+    of_eyes = {
+        "eye_yaw_left": "gaze_horizontal_left",
+        "eye_yaw_right": "gaze_horizontal_right",
+        "eye_pitch_left": "gaze_vertical_left",
+        "eye_pitch_right": "gaze_vertical_right",
     }
     for channel in chosen(channels):
-        control, share = controls_of_angles.get(channel, (channel, 1.0))
-        controls[control] = channels[channel] * share
+        control = of_eyes.get(channel, channel)
+        controls[control] = channels[channel] / DEGREES.get(control, 1.0)
     return controls
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from risorius.app.capture.drawing import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
+from risorius.app.control_names.angles import DEGREES, GAZE
 from risorius.app.motion.life import (
-    EYE_RANGE,
     EYES_MOST,
     LID,
     Idle,
@@ -18,10 +18,21 @@ from risorius.app.motion.life import (
 )
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Script
+from risorius.assets import load
 
 from .command_line import succeeded
 
 NOBODY = frozenset[str]()
+
+
+def test_angles_are_those_of_the_rig():
+    """A control at 1 turns head and eyes as far as the rig of all heads says."""
+    rig = load("head").rig
+    assert {name: DEGREES[f"head_{name}"] for name in ("yaw", "pitch", "roll")} == {
+        name: rig["head"][f"{name}_deg"] for name in ("yaw", "pitch", "roll")
+    }
+    assert {DEGREES[name] for name in DEGREES if name.startswith("gaze")} == {GAZE}
+    assert rig["eyes"]["gaze_deg"] == GAZE
 
 
 def lids_gap(scene):
@@ -58,7 +69,7 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed):
     off = []
     for time in np.arange(0.0, 600.0, 0.1):
         eyes = life.parts(time)["eyes"]
-        off.append(EYE_RANGE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
+        off.append(GAZE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
     assert max(off[:13]) == 0.0  # straight at the viewer at the start
     assert 0.03 < np.mean(np.array(off) > 3.0) < 0.2
     assert max(off) < 12.5
@@ -126,7 +137,7 @@ def test_a_camera_at_the_side_is_not_followed(scene):
         for yaw in range(-120, 121)
     ]
     assert np.abs(np.diff(walk)).max() < 0.2
-    assert np.abs(walk).max() <= EYES_MOST / EYE_RANGE + 1e-9
+    assert np.abs(walk).max() <= EYES_MOST / GAZE + 1e-9
 
 
 def _look(scene, viewer):
