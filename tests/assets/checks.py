@@ -2,12 +2,11 @@
 
 import numpy as np
 from numpy.linalg import norm
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from risorius.assets.model import Head, Part
 from risorius.assets.topology import Edge, Faces
 from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.normals import cross_products
 from risorius.geometry.sides import sides_of
 
@@ -30,10 +29,7 @@ def is_manifold(faces: Integers32) -> bool:
 
 def component_count(faces: Integers32) -> int:
     """The number of pieces of a mesh; faces with a common vertex are in one piece."""
-    used, corners = np.unique(faces, return_inverse=True)
-    links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
-    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(used),) * 2)
-    return int(csgraph.connected_components(graph, directed=False)[0])
+    return len(np.unique(pieces_of(faces, int(faces.max()) + 1)[faces]))
 
 
 def euler_characteristic(vertices: Floats64, faces: Integers32) -> int:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from risorius.bench import matrices
-from tests.app.command_line import refusal, risorius
 
 
 def test_a_plain_loop_is_the_product():
@@ -27,9 +26,3 @@ def test_pairs():
         assert abs(row.triangles - 2000) < 100
         assert 0.05 < row.gain < 20.0
     assert "a kept Loop matrix without normals" in matrices.report(rows)
-
-
-def test_a_card_has_no_pairs():
-    """For a graphics card the error is one line with the options that exclude each other."""
-    line = refusal(risorius("bench", "refine", "--matrix", "--refiner", "kahler-gl"))
-    assert line.startswith("risorius: --matrix needs --refiner kahler")

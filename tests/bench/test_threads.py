@@ -24,12 +24,14 @@ def test_pairs(monkeypatch):
 
 
 def test_one_thread_has_no_pair(monkeypatch):
-    """With one thread, one line says how to get more.
-
-    A graphics card is refused for this option.
-    """
+    """With one thread, one line says how to get more."""
     monkeypatch.setattr(threads.threads, "THREAD_COUNT", 1)
     with pytest.raises(UserError, match="NUMBA_NUM_THREADS=2"):
         threads.measure(["2k"], 0.1)
-    line = refusal(risorius("bench", "refine", "--threads", "--refiner", "kahler-gl"))
-    assert line.startswith("risorius: --threads needs --refiner kahler")
+
+
+@pytest.mark.parametrize("pairs", ["--threads", "--matrix"])
+def test_a_card_has_no_pairs(pairs):
+    """For a graphics card the error is one line with the options that exclude each other."""
+    line = refusal(risorius("bench", "refine", pairs, "--refiner", "kahler-gl"))
+    assert line.startswith(f"risorius: {pairs} needs --refiner kahler")
