@@ -1,1 +1,1 @@
-"""Labelled pictures of faces, which depend on their seed and number alone."""
+"""Make labelled pictures of faces; a seed and a number determine each picture."""

@@ -1,4 +1,4 @@
-"""Effects of a camera on a picture: blur, noise, and the blocks of a JPEG file, in this order."""
+"""Degrade pictures as a camera does: by blur, noise and JPEG compression, in this order."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from ..pictures import Image
 class Degradation:
     """Amount of each effect; 0 and None change nothing.
 
-    blur: standard deviation of a Gaussian on linear light [pixels]. noise: standard deviation,
-    independent in each channel [grey levels of 255]. jpeg: Pillow's quality, 1 to 95. seed: seed
-    of the noise.
+    blur: standard deviation of a Gaussian on linear light [pixels].
+    noise: standard deviation of the noise in each channel [grey levels of 255].
+    jpeg: quality of Pillow's compression, 1 to 95.
+    seed: seed of the noise.
     """
 
     blur: float
@@ -30,7 +31,7 @@ class Degradation:
 
 
 def degraded(image: Image, degradation: Degradation) -> Image:
-    """Return a picture (H, W, 3), uint8, with these effects applied."""
+    """Return a picture (H, W, 3), uint8, after degradation."""
     values = image.astype(np.float64)
     if degradation.blur > 0.0:
         light = to_linear(image / 255.0)

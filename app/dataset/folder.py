@@ -1,9 +1,9 @@
-"""The folder of a data set: complete samples, and the set's options.
+"""The folder of a data set, which holds samples and the options of the set.
 
-The files of a sample are written in `.unfinished` and renamed, its .json last. So a file with its
-final name is complete, even if the process is killed at any time. The lengths in the .json reveal a
-full disk, a copy that was cut short, or a deleted file: a sample counts as made when all of its
-files exist with these lengths.
+The files of a sample are written in `.unfinished`, and then moved to their final names, the .json
+last. So a file with its final name is complete, even if the process is killed at any time. The
+.json holds the lengths of the other files. A sample counts as made if all its files exist with
+these lengths, which reveals a full disk, an interrupted copy, or a deleted file.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..staging import is_staging_folder, locked
 from .shards import PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
-SEEN = "seen-"  # prefix of files by which workers recognize the set's folder
+SEEN = "seen-"  # prefix of files by which workers recognise the set's folder
 LENGTHS = "files"  # label that holds the lengths of a sample's other files [bytes]
 
 
@@ -43,12 +43,12 @@ class SetFolder:
 
     @property
     def log(self) -> Path:
-        """The file for output of processes; it is removed when the set is made."""
+        """The file that collects output of processes; it is removed when the set is complete."""
         return self.path / UNFINISHED / "log"
 
     @contextlib.contextmanager
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
-        """Begin a set in an empty folder, or resume one, and lock out other processes meanwhile.
+        """Begin a set in an empty folder, or resume a set; within this context, lock the folder.
 
         options: all options that decide on the samples, as JSON values. Raises UserError if the
         folder holds something else, or a set that was begun with other options.
@@ -80,9 +80,9 @@ class SetFolder:
             shutil.rmtree(unfinished)
 
     def _check(self, options: Mapping[str, Any], *, resume: bool) -> None:
-        """Raise UserError unless the folder is empty, or holds the set to be resumed.
+        """Raise UserError unless the folder is empty, or holds the set that is to be resumed.
 
-        A set that ended before its first sample may begin again with other options.
+        A set without samples may begin again with other options.
         """
         begun = self.path / self.BEGUN
         if not begun.exists():
@@ -123,7 +123,7 @@ class SetFolder:
             return packed | {int(match[1]) for match in found if match}
 
     def _has_samples(self) -> bool:
-        """Whether there is a sample, or a shard with readable samples."""
+        """Whether the folder has a sample or a shard."""
         return bool(self.numbers()) or any(self.path.glob(PATTERN))
 
     def has(self, index: int) -> bool:
@@ -140,9 +140,9 @@ class SetFolder:
         return all(_length(self.path / name) == length for name, length in lengths.items())
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
-        """Put the files of a sample in place, .json last; return their size [bytes].
+        """Write the files of a sample, the .json last; return their size [bytes].
 
-        write: writes the picture to a path, and the sample's other files beside it.
+        write: function that writes the picture to a path, and all other files beside it.
         """
         name = name_of(index)
         with cannot_be_written(self.path / name):

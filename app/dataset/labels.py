@@ -1,6 +1,6 @@
-"""Labels of a sample's face, in addition to the labels that `capture --passes` writes.
+"""Compute the labels of a sample's face; they include those that `capture --passes` writes.
 
-Unit and convention of every field are in docs/dataset.md.
+docs/dataset.md has the unit and the convention of each field.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..passes.labels import labels_of
 from ..scenes import FaceScene
 from .openings import apertures
 
-DIGITS = 5
+DIGITS = 5  # decimal places of labels
 
 
 def labels_of_face(
@@ -29,13 +29,13 @@ def labels_of_face(
 ) -> dict[str, Any]:
     """Return all labels of a face in its present state.
 
-    depth: depth map of its picture, (H, W). covered: flags of pixels where a mask hides all
-    landmarks behind it, (H, W); None: no pixels.
+    size: width and height of the picture [pixels]. depth: depth map of the picture, (H, W).
+    covered: flags of pixels where a mask hides landmarks, (H, W); None: no mask.
     """
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
-    # Positions without the turn of the head.
+    # Positions without the rotation of the head.
     positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
@@ -48,11 +48,11 @@ def labels_of_face(
 
 
 def action_units(scene: FaceScene) -> dict[str, float]:
-    """Return the values of all action units of the face, 0..1: AU12_left, AU12_right, and AU12.
+    """Return the values of all action units of a face, 0 to 1: AU12_left, AU12_right, AU12 etc.
 
-    A unit that is set has the set value. Other controls of muscles (visemes, head and gaze) count
-    as far as units can express them. A unit without a side has the value of its stronger side,
-    because FACS scores it without regard to sides.
+    A unit that is set has the set value. Other controls (visemes, head and gaze) are expressed by
+    units as well as possible. A unit without a side has the value of its stronger side, because
+    FACS scores it without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
@@ -64,7 +64,7 @@ def action_units(scene: FaceScene) -> dict[str, float]:
 
 
 def by_number(unit: str) -> tuple[int, str]:
-    """Sort key: AU2 before AU12, and AU12 before AU12_left."""
+    """The sort key of a unit: AU2 comes before AU12, and AU12 before AU12_left."""
     number, _, side = unit.removeprefix("AU").partition("_")
     return int(number), side
 

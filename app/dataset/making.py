@@ -1,4 +1,4 @@
-"""Production of a data set: samples in parallel processes, then the index and the card."""
+"""Make a data set: first its samples, in parallel processes, then the index and the card."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ from .summary import card_of, write_index
 
 @dataclass(frozen=True)
 class Made:
-    """A finished set: number of samples, number of new samples, size of new samples [bytes]."""
+    """A finished set.
+
+    samples: number of samples. new: number of new samples. size: size of new samples [bytes].
+    """
 
     samples: int
     new: int
@@ -39,11 +42,11 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make all missing and incomplete samples among `count` samples from number `first` on.
+    """Make those of `count` samples, from number `first` on, that are missing or incomplete.
 
     jobs: number of local processes. scheduler: address of a Dask cluster that makes the samples
-    instead. Raises UserError if the set cannot be made, or was begun with other options; finished
-    samples stay.
+    instead. resume: whether the folder may already hold samples of this set. Raises UserError if
+    the set cannot be made, or was begun with other options; finished samples stay.
     """
     folder = SetFolder(request.output)
     numbers = range(first, first + count)
@@ -59,7 +62,7 @@ def make_set(
             shares = _shares(request, missing, -(-len(missing) // jobs))
             arriving = run_all(make_samples, shares, log=folder.log)
         else:
-            # A lost share loses all its samples, but each share costs two seconds to start.
+            # A lost share loses all its samples, but each share takes two seconds to start.
             each = min(max(len(missing) // 64, 8), 64)
             arriving = made_on_cluster(folder, _shares(request, missing, each), scheduler)
         size = 0
@@ -94,7 +97,7 @@ def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Shar
     """Divide missing samples into shares of `each` samples.
 
     Samples of one person stay together, because a head takes long to build. Samples of one shard
-    stay together too.
+    also stay together.
     """
 
     def place(number: int) -> tuple[int, int]:
@@ -122,7 +125,7 @@ def _put_in_place(
 
 
 def _with_advice(made: Iterator[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Pass on the samples; add a hint on --resume to errors."""
+    """Yield the samples of `made`; add a hint on --resume to errors."""
     try:
         yield from made
     except UserError as error:

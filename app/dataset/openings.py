@@ -1,7 +1,7 @@
-"""Visible opening of mouth and eyes: the height of the gap between lips or lids.
+"""Measure the visible openings of mouth and eyes: the heights of the gaps between lips or lids.
 
-Distances between landmarks do not measure it: pressed lips roll inward, and shut lids lie on each
-other, but the landmarks of their edges stay millimetres apart.
+Distances between landmarks are no measure: pressed lips roll inward, and shut lids lie on each
+other, but landmarks on their edges stay millimetres apart.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 
 
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
-    """Return the openings of mouth and eyes [mm], seen from the front of the head, along z.
+    """Return the openings of mouth and eyes, seen along z: name -> height [mm].
 
-    landmarks: present positions [mm], shape (68, 3).
+    positions: vertices [mm], (V, 3). triangles: (F, 3). landmarks: present positions [mm], (68, 3).
     """
     found = {}
     for name, numbers in LOWER_EDGES.items():
@@ -39,10 +39,10 @@ def opening(near: Array, edge: Array) -> float:
 
     near: triangles of the skin nearby, (m, 3, 3). edge: points of the lower edge, (n, 3).
     """
-    near = near[to_viewer(near)]  # triangles seen from inside cover nothing
+    near = near[to_viewer(near)]  # back faces cover nothing
     left, right = sorted(edge[[0, -1], 0])
-    end_width = 1.0  # [mm] left out beside a corner, where lips or lids are joined
-    # Vertical planes across the opening, in which lines of sight lie.
+    end_width = 1.0  # [mm] beside a corner that are left out, because lips or lids are joined there
+    # Vertical planes across the opening, which contain lines of sight.
     columns = np.linspace(left + end_width, right - end_width, 40)
     from_left = edge[np.argsort(edge[:, 0])]
     heights = np.interp(columns, from_left[:, 0], from_left[:, 1])
@@ -61,15 +61,16 @@ def opening(near: Array, edge: Array) -> float:
 
 
 def around(triangles: Array, middle: Array, reach: float) -> Array:
-    """Return those triangles (n, 3, 3) whose centres lie within `reach` [mm] of a point."""
+    """Return the triangles (n, 3, 3) whose centres lie within `reach` [mm] of a point (3,)."""
     near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
     return near
 
 
 def _widest_gap(low: Array, high: Array, middle: float) -> float:
-    """Return the greatest height [mm] of a gap between the triangles that one plane cuts.
+    """Return the greatest height [mm] of a gap between the triangles that a plane cuts.
 
-    The gap begins near the height `middle`. low, high: ends of each triangle's cut, shape (n,).
+    The gap must begin near the height `middle`. low, high: heights between which the plane cuts
+    each triangle [mm], (n,).
     """
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
@@ -79,7 +80,7 @@ def _widest_gap(low: Array, high: Array, middle: float) -> float:
 
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
-    """Return which triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
+    """Return whether each triangle (n, 3, 3) faces the viewer; flags (n,)."""
     one = triangles[:, 1] - triangles[:, 0]
     other = triangles[:, 2] - triangles[:, 0]
     facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
@@ -89,8 +90,8 @@ def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
 def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bool_]]:
     """Cut the sides of triangles (n, 3, 3) with planes of constant x.
 
-    x: one plane for all triangles, or one for each, shape (n, 1). Returns the points, shape
-    (n, 3, 3), and flags of the sides that are really cut, shape (n, 3).
+    x: one plane for all triangles, or one for each, (n, 1). Returns the points where planes meet
+    the lines of the sides, (n, 3, 3), and whether they lie within the sides, (n, 3).
     """
     end = np.roll(triangles, -1, axis=1)
     start_x = triangles[:, :, 0]

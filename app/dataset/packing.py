@@ -1,4 +1,4 @@
-"""Packing of samples into shards; a shard is written when all of its samples exist."""
+"""Pack samples into shards; a shard is written when all its samples exist."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Packing:
     """The shards of a data set."""
 
     def __init__(self, folder: SetFolder, size: int, numbers: range) -> None:
-        """size: samples in a shard; shard k begins at number k * size.
+        """size: number of samples in a shard; shard k begins with sample k * size.
 
         numbers: numbers of all samples in the set.
         """
@@ -28,9 +28,9 @@ class Packing:
         self._waiting: dict[int, set[int]] = {}
 
     def begin(self) -> None:
-        """Keep complete shards, and unpack the others as far as they are readable.
+        """Keep complete shards; unpack the readable samples of all others.
 
-        The last shard of a set that becomes longer is unpacked too.
+        If a set is to become longer, its last shard is also unpacked.
         """
         with cannot_be_written(self._folder.path):
             for path in sorted(self._folder.path.glob(PATTERN)):
@@ -49,7 +49,7 @@ class Packing:
         return number // self._size in self._packed
 
     def expect(self, missing: Iterable[int]) -> None:
-        """Note which samples will be made; pack all shards that are complete already."""
+        """Note which samples will be made, and pack all shards that need none of them."""
         places = {number // self._size for number in self._numbers}
         self._waiting = {place: set() for place in places - self._packed.keys()}
         for number in missing:
@@ -58,13 +58,13 @@ class Packing:
             self._pack_if_whole(place)
 
     def add(self, number: int) -> None:
-        """Note a finished sample; pack its shard if it was the last."""
+        """Note a finished sample; if it was the last of its shard, pack the shard."""
         place = number // self._size
         self._waiting[place].discard(number)
         self._pack_if_whole(place)
 
     def labels_and_place(self, number: int) -> tuple[dict[str, Any], dict[str, str | int]]:
-        """Return the labels of a sample, and its place in its shard."""
+        """Return the labels of a sample, and its position in its shard."""
         shard = self._packed[number // self._size]
         return shard.labels_of(number), shard.place_of(number)
 
@@ -85,7 +85,7 @@ class Packing:
                 _remove(each)
 
     def _remove_leftovers(self) -> None:
-        """Remove files of packed samples, which an interrupted process has left."""
+        """Remove files of packed samples that an interrupted process has left."""
         with os.scandir(self._folder.path) as items:
             found = [re.fullmatch(r"(\d{6})[._].+", item.name) for item in items]
         packed = [each[0] for each in found if each and self.has(int(each[1]))]

@@ -20,12 +20,15 @@ from .table import SampleTable, load_table
 
 @dataclass(frozen=True)
 class SetRequest:
-    """A requested data set; it can be pickled.
+    """The request for a data set; it can be pickled.
 
-    output: the folder of the set. size: width and height of pictures [pixels]. passes: names of
-    passes, see app/passes/passes.py. refiner: None for the default refiner. degrade: whether
-    pictures have blur, noise and JPEG. shards: number of samples in each shard; None for no
-    shards. arguments: the same request as command-line options.
+    output: the folder of the set.
+    size: width and height of pictures [pixels].
+    passes: names of passes, see app/passes/passes.py.
+    refiner: name of a refiner; None for the default.
+    degrade: whether pictures get blur, noise and JPEG compression.
+    shards: number of samples in each shard; None: no shards.
+    arguments: the same request as command-line options.
     """
 
     output: Path
@@ -42,7 +45,7 @@ class SetRequest:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """Return the options that decide on samples, as JSON; a resumed set must have the same."""
+        """Return the options that decide on samples, as JSON values; a resumed set keeps them."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {
@@ -73,7 +76,7 @@ def request_of(
     degrade: bool = False,
     shards: int | None = None,
 ) -> SetRequest:
-    """Return the request of command-line options; raise UserError if they do not fit together."""
+    """Make the request of command-line options; if they do not fit together, raise UserError."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)

@@ -1,12 +1,12 @@
-"""Random sampling: the numbers that describe sample n of a seed, before anything is drawn.
+"""Draw the random numbers that describe sample n of a seed.
 
-    table, seed, n  ->  Sample: expression, head, eyes, camera, person, looks
+    table, seed, n  ->  Sample: expression, head, eyes, camera, person, light
 
-All random numbers of a sample come from numpy's SeedSequence([seed, n]), and each part of a sample
-has its own stream: other ranges of the camera do not change the faces.
+All random numbers of a sample come from numpy's SeedSequence([seed, n]). Each part of a sample has
+a separate stream, so that other ranges of the camera do not change the faces.
 
-Sources: aus.toml names the sources of the table. Letters of intensity are equal fifths of 0..1
-here, as OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
+aus.toml names the sources of the table. Letters of intensity are equal fifths of 0 to 1 here, as in
+OpenFace and DISFA, which number them 1 to 5. In FACS, C and D are wider than the other letters.
 """
 
 from __future__ import annotations
@@ -20,15 +20,17 @@ from ..control_names.angles import DEGREES
 from .degrading import Degradation
 from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
 
-MOST_UNITS = 7  # largest number of units in a mixture
+MOST_UNITS = 7  # greatest number of units in a mixture
 
 
 @dataclass(frozen=True)
 class SampleCamera:
     """A camera around the head.
 
-    yaw, pitch, field_of_view: [degrees]. zoom: 1 fits the head into the picture. shift: offset of
-    the head, as shares of the picture's height.
+    yaw, pitch: position of the camera [degrees].
+    zoom: 1 fits the head into the picture; 2 makes it twice as large.
+    field_of_view: from top to bottom [degrees].
+    shift: offset of the head to the right and up, as fractions of the picture's height.
     """
 
     yaw: float
@@ -40,15 +42,18 @@ class SampleCamera:
 
 @dataclass(frozen=True)
 class Sample:
-    """One sample.
+    """The numbers that describe a sample.
 
-    kind, name: kind of face, and its name, as "expression" and "happiness".
-    controls: all values of the face except its gaze.
-    gaze: direction within the head, to its left and up [degrees]; None: into the camera.
+    kind: kind of face, such as "expression".
+    name: name of the face, such as "happiness".
+    controls: all controls of the face, except the gaze.
+    gaze: angles of the eyes relative to the head, to its left and up [degrees]; None: the eyes look
+        into the camera.
+    view: the camera.
     person: number of the person, see `assets.identities.sample_identity`.
-    light: name of one of the renderer's lights; the user's maps replace it.
+    light: name of a light of the renderer; light maps of the user replace it.
     surroundings: seed of light and background.
-    degradation: blur, noise and JPEG of a degraded set.
+    degradation: blur, noise and JPEG compression, for degraded sets.
     """
 
     seed: int
@@ -99,7 +104,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
 
 
 def chosen(random: np.random.Generator, shares: Shares) -> str:
-    """Return a random name; the probability of a name is its share."""
+    """Return a random name; its probability is proportional to its share."""
     weights = np.array(list(shares.values()))
     return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
 
@@ -127,10 +132,10 @@ class _Face:
         self._table = table
         self._random = random
         self.controls: dict[str, float] = {}
-        self.one_sided = table.sides.one_sided  # probability for each unit
+        self.one_sided = table.sides.one_sided  # probability that a unit is one-sided
 
     def fill(self, kind: str) -> str:
-        """Make a face of this kind; return its name."""
+        """Compose a face of some kind; return the name of the face."""
         table = self._table
         random = self._random
         if kind == "expression":
@@ -151,7 +156,7 @@ class _Face:
         return self._speak() if kind == "speech" else ""
 
     def _mix(self, units: Shares) -> None:
-        """Add one random unit, or two in half of the cases, and units that often accompany them."""
+        """Add one or two random units, and units that often accompany them."""
         random = self._random
         waiting = [chosen(random, units) for _ in range(1 + int(random.random() < 0.5))]
         while waiting and len(self.controls) < MOST_UNITS:
@@ -163,7 +168,7 @@ class _Face:
                     waiting.append(other)
 
     def _speak(self) -> str:
-        """Add a viseme or a blend of two; in half of the cases also units of brows and eyes."""
+        """Add one viseme or a blend of two, and in half of all cases units of brows and eyes."""
         random = self._random
         names = [chosen(random, self._table.speech) for _ in range(2)]
         share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
@@ -180,7 +185,7 @@ class _Face:
         return "+".join(dict.fromkeys(spoken))
 
     def _add(self, unit: str, value: float) -> bool:
-        """Add a unit, unless a set unit excludes it; return whether it was added."""
+        """Add a unit, unless another unit excludes it; return whether it was added."""
         is_possible = self._table.goes_with(unit, self.controls)
         if is_possible:
             self.controls[unit] = min(value, 1.0)
@@ -189,7 +194,7 @@ class _Face:
     def _intensity(self) -> float:
         """Return a random intensity: choose a letter, then a value in its fifth of 0..1."""
         place = LETTERS.index(chosen(self._random, self._table.letters))
-        # Nothing is visible below a quarter of the lowest fifth.
+        # Values below a quarter of the lowest fifth would be invisible.
         within = self._random.uniform(0.0 if place else 0.25, 1.0)
         return float((place + within) / len(LETTERS))
 
@@ -197,7 +202,7 @@ class _Face:
 def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
-    """Return a blink that shuts the lids partly or fully; {} if other units move the lids."""
+    """Return a random blink that shuts the lids partly or fully, or {}; other units of lids win."""
     is_blinking = random.random() < table.eyes.blink
     closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
@@ -211,7 +216,7 @@ def _two_sided(
     controls: Mapping[str, float],
     one_sided: float,
 ) -> dict[str, float]:
-    """Split units of an asymmetric face into sides; the same side is stronger in all of them."""
+    """Split units of an asymmetric face into two sides; one side is stronger in all units."""
     is_asymmetric = random.random() < table.sides.asymmetric
     side = int(random.integers(2))  # the stronger or only side
     result: dict[str, float] = {}

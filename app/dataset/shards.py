@@ -1,9 +1,10 @@
-"""Shards of a data set: WebDataset's tar files with many samples each, and their listings.
+"""Read and write shards of a data set: tar files of WebDataset with many samples, and listings.
 
-A million small files slow a file system down. `shard-000003.tar` holds the samples 3000 to 3999 if
-a shard has 1000. WebDataset divides the name of a file at its first dot, so `003000_seg.png`
-becomes `003000.seg.png` there. `shard-000003.json` has the length of the tar file, and the place of
-each sample in it; it is written last.
+Shards exist because a million small files slow a file system down. If a shard has 1000 samples,
+`shard-000003.tar` holds the samples 3000 to 3999. WebDataset divides the name of a file at its
+first dot, so `003000_seg.png` is named `003000.seg.png` in a shard. The listing
+`shard-000003.json`, which is written last, has the length of the tar file, and the position of each
+sample in it.
 
 WebDataset: Aizman, Maltby, Breuel 2019, "High Performance I/O For Large Scale Deep Learning",
 IEEE Big Data.
@@ -30,33 +31,33 @@ PATTERN = "shard-[0-9][0-9][0-9][0-9][0-9][0-9].tar"
 class Shard:
     """A tar file of samples.
 
-    places: sample number -> its first byte in the file, and its length [bytes].
+    places: sample number -> first byte in the file, and length [bytes].
     """
 
     path: Path
     places: Mapping[int, tuple[int, int]]
 
     def labels_of(self, number: int) -> dict[str, Any]:
-        """Return the labels of a sample, whose .json is the first of its files."""
+        """Return the labels of a sample; its .json is the first of its files."""
         with self.path.open("rb") as file:
             file.seek(self.places[number][0])
             labels: dict[str, Any] = json.loads(next(_files_in(file))[1])
         return labels
 
     def place_of(self, number: int) -> dict[str, str | int]:
-        """Return the place of a sample, for the index of the set."""
+        """Return the position of a sample, for the index of the set."""
         first, length = self.places[number]
         return {"shard": self.path.name, "offset": first, "bytes": length}
 
 
 def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of each readable sample file in a tar file, named as in the folder."""
+    """Yield the name, as in the folder, and the content of each readable file in a tar file."""
     with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
         yield from _files_in(file)
 
 
 def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Shard:
-    """Write a shard of samples, each a number and its files; raises UserError if this fails."""
+    """Write a shard; samples: number and files of each. Raises UserError if writing fails."""
     places: dict[int, tuple[int, int]] = {}
     with written_atomically(path) as part, part.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as tar:
@@ -72,7 +73,7 @@ def write_shard(path: Path, samples: Iterable[tuple[int, Sequence[Path]]]) -> Sh
 
 
 def read_shard(path: Path) -> Shard | None:
-    """Return the shard of a tar file; None if it does not have the length in its listing."""
+    """Return the shard of a tar file; None if its length differs from that in its listing."""
     try:
         content = json.loads(listing_of(path).read_bytes())
         if content["bytes"] != path.stat().st_size:
@@ -84,7 +85,7 @@ def read_shard(path: Path) -> Shard | None:
 
 
 def remove_shard(path: Path) -> None:
-    """Delete a tar file and its listing, as far as they exist."""
+    """Delete a tar file and its listing, if they exist."""
     listing_of(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
@@ -95,7 +96,7 @@ def listing_of(path: Path) -> Path:
 
 
 def _add(tar: tarfile.TarFile, path: Path) -> int:
-    """Add a file without time and owner, for reproducible bytes; return its size in the tar."""
+    """Add a file without time and owner, so that bytes are reproducible; return its size there."""
     content = path.read_bytes()
     member = tarfile.TarInfo(path.name.replace("_", ".", 1))
     member.size = len(content)

@@ -1,7 +1,7 @@
-"""Shares of a set: samples that one process makes, on this computer or on a Dask worker.
+"""Make shares of a set: the samples that one process makes, on this computer or a Dask worker.
 
 A worker that can reach the folder of the set writes into it. Other workers make samples in a
-folder of their own, and send the bytes back.
+temporary folder, and send the bytes back.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ from .studio import Studio
 
 @dataclass(frozen=True)
 class Share:
-    """The samples that one process makes, by their numbers, sorted by person.
+    """The samples that one process makes.
 
-    token: name of a file in the folder of unfinished samples. A process on another computer that
-    finds this file can reach the set's folder; "" on the same computer.
+    numbers: numbers of the samples, sorted by person.
+    token: name of a file in the folder of unfinished samples; "" on the same computer. A process on
+        another computer that finds this file can reach the folder of the set.
     """
 
     request: SetRequest
@@ -39,9 +40,9 @@ class Share:
 
 @dataclass(frozen=True)
 class MadeSample:
-    """A finished sample, and its size [bytes].
+    """A finished sample.
 
-    files: name -> content of the files, if they are sent back; else empty.
+    size: size of its files [bytes]. files: name -> content, if files are sent back; else empty.
     """
 
     number: int
@@ -84,7 +85,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 def made_on_cluster(
     folder: SetFolder, shares: Sequence[Share], scheduler: str
 ) -> Iterator[MadeSample]:
-    """Let a Dask cluster make samples, and yield them; raise UserError at the first failure."""
+    """Let a Dask cluster make samples, and yield them; the first failure raises UserError."""
     if not shares:
         return
     token = f"{SEEN}{secrets.token_hex(8)}"

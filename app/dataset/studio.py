@@ -1,8 +1,8 @@
-"""The studio draws the picture and labels of one sample after another, in one process.
+"""Draw the pictures, and compute the labels, of samples in one process.
 
 No state passes from one sample to the next: the scene is reset, and reused objects (the OpenGL
 context, the heads of some persons) do not depend on earlier samples. So a sample has the same
-bytes from any process, in any order.
+bytes in any process, and in any order.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ from .table import BARE
 
 @dataclass(frozen=True)
 class Shot:
-    """The picture and labels of a sample."""
+    """The picture of a sample (H, W, 3), and its labels and passes."""
 
     image: Image
     known: Labelled
 
     def save(self, picture: Path) -> None:
-        """Write the picture and the files beside it; raises OSError if this fails."""
+        """Write the picture to a path, and the other files beside it; may raise OSError."""
         # zlib's level 4 takes a third of the time of the default 6, and 6 % more bytes.
         PIL.Image.fromarray(self.image).save(picture, compress_level=4)
         self.known.save(picture)
@@ -60,7 +60,7 @@ class Shot:
 
 @dataclass(frozen=True)
 class _Model:
-    """The scene of a person, with all that draws and labels it."""
+    """The scene of a person, with the objects that draw and label it."""
 
     scene: FaceScene
     pipeline: Pipeline
@@ -69,13 +69,12 @@ class _Model:
 
 
 class Studio:
-    """An offscreen surface, and the heads of the last few persons."""
+    """Draws samples on an offscreen surface; it keeps the heads of the last four persons."""
 
     def __init__(self, request: SetRequest) -> None:
         self._request = request
         self._surface = render.open_offscreen(request.size, samples=8)
         self._renderer = render.Renderer(self._surface)
-        # The last four persons are cached.
         self._person = lru_cache(4)(self._person_of)
 
     def shoot(self, index: int) -> Shot:
@@ -111,7 +110,7 @@ class Studio:
     def _picture(
         self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
-        """Draw the present scene; return the picture, and labels of its light and background."""
+        """Draw the present scene; return the picture, and the labels of light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         lit = light_of(sample.light, request.lights, random)
@@ -169,7 +168,7 @@ class Studio:
 def _shrink_for(size: tuple[int, int]) -> int:
     """Return the factor by which skin textures shrink for pictures of a size [pixels].
 
-    A face at zoom 1 has two thirds of the texture's height, and the whole height of the picture.
+    At zoom 1, the height of the picture shows two thirds of the texture's height.
     """
     texels = 1280
     shrink = 1
@@ -195,19 +194,19 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """Return a camera that centres the scene's present head, moved by the view's shift.
+    """Return a camera that centres the present head of a scene, and then moves by the shift.
 
-    The camera moves again if landmarks would lie outside the picture of `size` pixels.
+    If landmarks would lie outside the picture of `size` pixels, the camera moves again.
     """
     rest = scene.rest_positions
     chin = 8  # a landmark
-    below_chin = 12.0  # [mm] of the neck that move with the head
+    below_chin = 12.0  # [mm] of the neck below the chin that belong to the framed head
     head = rest[:, 1] > rest[scene.landmarks[chin], 1] - below_chin
     camera = render.OrbitCamera.framing(
         np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view
     )
     camera.orbit(view.yaw, view.pitch)
-    margin = 0.03  # share of the picture, free on each side at zoom 1; the neck ends outside
+    margin = 0.03  # fraction of the picture that is free on each side at zoom 1
     camera.fit(scene.positions[head], margin)
     camera.zoom(view.zoom)
     camera.pan(*view.shift)

@@ -1,4 +1,4 @@
-"""The summary of a whole set, from its samples' labels: index.csv, and the card, README.md."""
+"""Summarise a whole set by the labels of its samples: write index.csv and the card README.md."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from typing import Any
 from .labels import by_number
 from .request import SetRequest
 
-LEAST_PRESENT = 0.05  # least value of a unit that counts as present: a quarter of intensity A
+LEAST_PRESENT = 0.05  # value from which a unit counts as present, a quarter of intensity A
 
 
 @dataclass
 class Counts:
-    """Numbers of samples by kind, by person (number) and by action unit."""
+    """Numbers of samples for each kind, each person's number, and each action unit."""
 
     kinds: Counter[str] = field(default_factory=Counter)
     persons: Counter[int] = field(default_factory=Counter)
@@ -28,7 +28,7 @@ class Counts:
 def write_index(
     path: Path, samples: Iterable[tuple[dict[str, Any], Mapping[str, str | int]]]
 ) -> Counts:
-    """Write a CSV file with a row for each sample: kind, head pose and all action units.
+    """Write a CSV file whose rows have kind, head pose, action units etc. of each sample.
 
     samples: labels and additional columns of each sample. Returns the counts for the card.
     """
@@ -62,7 +62,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
 
 
 def card_of(request: SetRequest, numbers: range, counts: Counts) -> str:
-    """Return the card of a requested set: its command, and counts of each kind and unit."""
+    """Return the text of a set's card: the command, and how frequent each kind and unit is."""
     samples = len(numbers)
     persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]

@@ -1,4 +1,4 @@
-"""Light and background of a sample; the background is made of colours, a picture or a light map."""
+"""Choose light and background of a sample; a background is a gradient, a picture or a light map."""
 
 from __future__ import annotations
 
@@ -27,14 +27,17 @@ from ..text import as_text
 
 
 def _digest(paths: tuple[Path, ...]) -> str:
-    """Return a digest of the names and sizes of files, 16 hexadecimal digits."""
+    """Return a digest of 16 hexadecimal digits of the names and sizes of files."""
     listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
     return hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Backgrounds:
-    """One colour for all samples (sRGB, 0..1), pictures to choose from, or random soft colours."""
+    """The backgrounds of all samples; without colour and pictures they are random soft colours.
+
+    colour: colour of all backgrounds, sRGB, 0 to 1. pictures: files from which pictures are chosen.
+    """
 
     colour: tuple[float, float, float] | None = None
     pictures: tuple[Path, ...] = ()
@@ -47,7 +50,7 @@ class Backgrounds:
         return {"pictures": len(self.pictures), "content": _digest(self.pictures)}
 
     def colours(self, random: np.random.Generator) -> Background:
-        """Return colours near grey for one sample; the edge is a little darker or lighter."""
+        """Return a gradient from a random colour near grey to a similar colour at the edge."""
         if self.colour is not None:
             return Background(self.colour, self.colour)
         hue, saturation, value = random.uniform([0.0, 0.0, 0.15], [1.0, 0.35, 0.95])
@@ -57,12 +60,12 @@ class Backgrounds:
         return Background(centre, edge)
 
     def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
-        """Return the name of a random picture, and a random part of it, sRGB, shape (H, W, 3).
+        """Return the name of a random picture, and a random part of it, sRGB, (H, W, 3), uint8.
 
-        Raises UserError for a file that is not a picture.
+        size: width and height of this part [pixels]. A file that is no picture raises UserError.
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
-        # At least this share of a picture's shorter side is visible.
+        # `share` is the visible fraction of the picture's limiting side, at least 0.6.
         share, across, along = random.uniform([0.6, 0.0, 0.0], 1.0)
         with _readable(path) as opened:
             whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
@@ -78,10 +81,11 @@ class Backgrounds:
 
 @dataclass(frozen=True)
 class SampleLight:
-    """The light of a sample: a lamp or a light map.
+    """The light of a sample, from a lamp or a light map.
 
-    map: None for a lamp. turn: angle by which the map is turned [deg]. exposure: factor on the
-    map's radiance.
+    map: the light map; None for a lamp.
+    turn: angle by which the map is turned [deg].
+    exposure: factor on the map's radiance.
     """
 
     name: str
@@ -99,7 +103,7 @@ class SampleLight:
 
 @dataclass(frozen=True)
 class LightFiles:
-    """The user's light maps, which replace the lights of the table."""
+    """The user's light maps, which replace the lights of the table, if there are any."""
 
     paths: tuple[Path, ...] = ()
 
@@ -115,9 +119,9 @@ def _light_map(path: Path) -> LightMap:
 
 
 def light_of(name: str, files: LightFiles, random: np.random.Generator) -> SampleLight:
-    """Vary a light at random: its brightness and colour, and its direction or the map's turn.
+    """Choose a light, and vary its brightness, colour and direction at random.
 
-    name: a light of the renderer; ignored if there are files.
+    name: a light of the renderer; ignored if `files` has light maps.
     """
     if not files.paths and name in LAMPS:
         return SampleLight(name, _lamp(name, random))
@@ -127,7 +131,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
         name = as_text(path.name)
         light_map = _light_map(path)
         turn = round(float(random.uniform(-180.0, 180.0)), 2)
-    else:  # built-in maps have their windows and lamps in front of the face
+    else:  # smaller angles, because windows and lamps of built-in maps lie in front of the face
         turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
     light, exposure = light_map.exposed(turn)
     tint = _tint(random)
@@ -138,7 +142,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
 
 def _tint(random: np.random.Generator) -> Floats64:
     """Draw random factors on red, green and blue light."""
-    # Standard deviation of red and blue light, which change in opposite ways.
+    # Red and blue light change in opposite directions, by a standard deviation of 0.08.
     warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
     return np.asarray(random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth]))
 
@@ -148,9 +152,9 @@ def _tinted(tint: Floats64, light: tuple[float, float, float]) -> tuple[float, .
 
 
 def _lamp(name: str, random: np.random.Generator) -> Light:
-    """Vary one of the renderer's lamps: the direction of its key light, brightness and colour."""
+    """Vary a lamp of the renderer: the direction of the key light, brightness and colour."""
     light = LAMPS[name]
-    # The key light moves by 18 degrees along each axis (standard deviation).
+    # The standard deviation along each axis is 18 degrees.
     to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
     tint = _tint(random)
@@ -162,7 +166,7 @@ def _lamp(name: str, random: np.random.Generator) -> Light:
 
 
 def laid_over(picture: Image, premultiplied: Image) -> Image:
-    """Blend a premultiplied picture (H, W, 4) over another (H, W, 3), as OpenGL does."""
+    """Blend a premultiplied picture (H, W, 4) over a picture (H, W, 3), as OpenGL does; uint8."""
     through = 1.0 - premultiplied[..., 3:] / 255.0
     blended: Image = (
         np.rint(premultiplied[..., :3] + through * picture).clip(0, 255).astype(np.uint8)
@@ -185,7 +189,9 @@ def light_files_of(path: Path | None) -> LightFiles:
         files = (each for each in whole.iterdir() if each.is_file())
         paths = tuple(sorted(each for each in files if each.suffix.lower() in LIGHT_SUFFIXES))
         if not paths:
-            raise UserError(f"--light {path}: no map of light in it, {', '.join(LIGHT_SUFFIXES)}")
+            raise UserError(
+                f"--light {path}: the folder has no light map ({', '.join(LIGHT_SUFFIXES)})"
+            )
         for each in paths:
             check_light_map(each)
     _light_map(paths[0])  # other maps are read later, because many would take minutes
@@ -204,9 +210,11 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         suffixes = (".png", ".jpg", ".jpeg", ".webp")
         pictures = tuple(sorted(p for p in folder.iterdir() if p.suffix.lower() in suffixes))
         if not pictures:
-            raise UserError(f"--background {text}: no picture in it, {', '.join(suffixes)}")
+            raise UserError(
+                f"--background {text}: the folder has no picture ({', '.join(suffixes)})"
+            )
         for path in pictures:
-            with _readable(path):  # only reads the header: thousands of pictures would take minutes
+            with _readable(path):  # reads only headers; whole pictures would take minutes
                 pass
         return Backgrounds(pictures=pictures)
     try:
@@ -220,7 +228,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
 
 @contextlib.contextmanager
 def _readable(path: Path) -> Iterator[PIL.Image.Image]:
-    """Open a picture; raise UserError if it cannot be read, here or inside the block."""
+    """Open a picture; an error while it is opened or used in this context raises UserError."""
     try:
         with PIL.Image.open(path) as opened:
             yield opened

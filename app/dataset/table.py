@@ -1,6 +1,6 @@
-"""The table from which samples are drawn: aus.toml, or a user's edited copy.
+"""Read and check the table from which samples are drawn: aus.toml, or a user's edited copy.
 
-The table names its own sources. This module reads and checks it.
+Comments of the table name its sources.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ..files import NoSuchFileError, read_text
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 BARE = "none"  # in the table: no glasses, or no mask
-PERSONS = 1_000_000  # persons of each seed; other seeds have other persons
+PERSONS = 1_000_000  # number of persons of a seed; other seeds have other persons
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -43,13 +43,13 @@ def _layer(title: str) -> Mapping[str, Any]:
 
 
 def _units() -> list[str]:
-    # These have their own sections.
+    # Other sections of the table move eyes and head.
     units_of_eyes_and_head = {f"AU{number}" for number in range(51, 65)}
     return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
 
 
 def _drawn(shares: dict[str, float]) -> Shares:
-    """Return shares for a random choice; raise ValueError if all are 0."""
+    """Return shares for a random choice; if all are 0, raise ValueError."""
     if not any(shares.values()):
         raise ValueError("all shares are 0; at least one must be above 0")
     return shares
@@ -62,12 +62,12 @@ def _ordered(ends: Range) -> Range:
 
 
 def _between(low: float, high: float) -> MadeFrom:
-    """Return the type of a range whose ends lie within these limits."""
+    """Return the type of a range whose ends lie between two limits."""
     return MadeFrom(Annotated[Range, Within(low, high)], _ordered)
 
 
 def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
-    """Return the type of a table that maps some of these names to weights."""
+    """Return the type of a table that maps some of the given names to weights."""
     return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _drawn)
 
 
@@ -79,7 +79,11 @@ Unit = Annotated[str, OneOf(_units)]
 
 @dataclass(frozen=True)
 class Expression(Record):
-    """An expression: its weight, the share of one-sided faces, the probability of each unit."""
+    """An expression.
+
+    units: probability of each unit. share: weight of the expression. one_sided: probability that a
+    face is one-sided.
+    """
 
     units: Annotated[dict[Unit, Share], called(REST)]
     share: Weight = 0.0
@@ -113,7 +117,7 @@ class Excluded(Record):
 
 @dataclass(frozen=True)
 class Sides(Record):
-    """Differences between left and right."""
+    """Probabilities of asymmetric and of one-sided faces, and difference between the sides."""
 
     asymmetric: Share
     difference: Share
@@ -122,7 +126,7 @@ class Sides(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Shares of samples with a blink, or a look into the camera; spread of the gaze [degrees]."""
+    """Probabilities of a blink and of a look into the camera; spread of the gaze [degrees]."""
 
     blink: Share
     at_camera: Share
@@ -132,7 +136,7 @@ class Eyes(Record):
 
 @dataclass(frozen=True)
 class HeadTurn(Record):
-    """Turns of the head [degrees], up to half of the neck's range."""
+    """Spread of the head's rotation [degrees], at most half of the neck's range."""
 
     yaw: Annotated[float, Within(0.0, 20.0)]
     pitch: Degrees
@@ -141,7 +145,7 @@ class HeadTurn(Record):
 
 @dataclass(frozen=True)
 class Camera(Record):
-    """Ranges of the camera's position, field of view and shift."""
+    """Ranges of the camera: angles and field of view [degrees], zoom, and shift [heights]."""
 
     yaw: Annotated[Range, _between(-90.0, 90.0)]
     pitch: Annotated[Range, _between(-60.0, 60.0)]
@@ -152,7 +156,7 @@ class Camera(Record):
 
 @dataclass(frozen=True)
 class Persons(Record):
-    """Number of persons, share of women, ages [years], and tones of skin."""
+    """Number of persons, fraction of women, ages [years], and skin tones, ITA [degrees]."""
 
     count: Annotated[int, Within(1, PERSONS)]
     women: Share
@@ -162,7 +166,7 @@ class Persons(Record):
 
 @dataclass(frozen=True)
 class Degradations(Record):
-    """Frequency and amount of blur, noise and compression in pictures."""
+    """Probabilities and amounts of blur, noise and compression of pictures."""
 
     blurred: Share
     noisy: Share
@@ -223,9 +227,9 @@ def table_text() -> str:
 
 
 def load_table(path: Path | None) -> SampleTable:
-    """Load a table, and complete it from the built-in table; None loads the built-in table.
+    """Load a table, and add missing rows from the built-in table; None loads the built-in table.
 
-    Raises UserError with file, section and row.
+    An error raises UserError, whose message has file, section and row.
     """
     sections = parsed_toml(table_text())
     where = str(path or "aus.toml")
@@ -238,7 +242,7 @@ def load_table(path: Path | None) -> SampleTable:
             ) from None
         except ValueError as error:
             raise UserError(f"{path}: {error}") from None
-        # Missing rows of these sections come from the built-in table.
+        # In these sections, rows that are missing come from the built-in table.
         filled_up = ("sides", "eyes", "head", "camera", "persons", "degradations")
         for name, rows in own.items():
             is_added = name in filled_up and isinstance(rows, dict)

@@ -1,1 +1,1 @@
-"""Avatars: heads with named shapes, on the built-in head or on a file's own vertices."""
+"""Make avatars: heads with named shapes, with the vertices of a file or of the built-in head."""

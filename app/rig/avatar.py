@@ -1,4 +1,4 @@
-"""Makes the avatar that `risorius rig` writes: a head with named shapes from the simulation."""
+"""Make the avatar that `risorius rig` writes: a head with named shapes from the simulation."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ GLTF = (".glb", ".gltf")
 class RigRequest:
     """Options of an avatar.
 
-    kinds: kinds of shapes, as in `poses.KINDS`.
-    eyes: "nodes", "targets", or None for the usual choice of the file's format.
+    kinds: kinds of shapes, see `poses.KINDS`.
+    eyes: "nodes" or "targets" turn the eyeballs; None: the default of the file's format.
     corrections: corrected roles of pieces, see `pieces.corrected`.
     adds_parts: whether missing eyes, teeth and tongue are added.
-    correctives: largest number of corrective shapes, each for a pair of shapes.
+    correctives: greatest number of corrective shapes; each corrects a pair of shapes.
     progress: whether a progress bar is shown.
     take: the take on which sums of ARKit's shapes are compared with the simulation, or None.
     chooses_by_take: whether the take decides which pairs get correctives.
@@ -60,10 +60,10 @@ class RigRequest:
 
 @dataclass(frozen=True)
 class FileHead:
-    """A head from a file: the file, its pieces, and the body that a face moves.
+    """A head from a file, with the pieces of the file, and the body that a simulated face moves.
 
-    painted: colours and pictures of the file; None for a glTF file, which is copied.
-    stored: the meshes of a glTF file, see `stored_pieces`; empty for other files.
+    painted: colours and textures of the file; None for a glTF file, which is copied.
+    stored: meshes of a glTF file, see `stored_pieces`; empty for other files.
     """
 
     head: FittedHead
@@ -76,11 +76,14 @@ class FileHead:
 
 @dataclass(frozen=True)
 class Avatar:
-    """A head with its named shapes.
+    """A head with named shapes.
 
-    file: the file of a user's head; None for the built-in head or a person. shapes: the shapes of
-        each body; the file's body or the skin comes first.
-    names: names of the shapes; correctives of `pairs` come last. sums: errors of sums of shapes.
+    file: the file of a user's head; None for the built-in head or a person.
+    shapes: shapes of each body; the body of the file, or the skin, comes first.
+    names: names of the shapes; correctives come last, in the order of `pairs`.
+    pairs: pairs of shapes that have a corrective.
+    eyes_are_nodes: whether nodes turn the eyeballs.
+    sums: errors of sums of shapes.
     """
 
     scene: FaceScene
@@ -93,7 +96,7 @@ class Avatar:
 
     @property
     def extras(self) -> dict[str, Any]:
-        """The rule by which programs weigh the correctives, for the extras of a file."""
+        """The extras of a file that say how to weigh the correctives; empty if there are none."""
         rules = [
             {"name": f"{first}_{second}", "product": [first, second]}
             for first, second in self.pairs
@@ -105,9 +108,10 @@ Say = Callable[[str], None]
 
 
 def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
-    """Make the avatar of a head (None: the built-in head); `say` receives lines about it.
+    """Make the avatar of a head; None is the built-in head.
 
-    The avatar of a head from a file includes the pieces of this file.
+    The avatar of a head from a file includes all pieces of this file. `say` is called with lines
+    about the avatar.
     """
     file = None
     if head is not None and head.files:
@@ -195,7 +199,7 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
 def _names_of_vertices(
     count: int, painted: PaintedMesh | None, stored: Sequence[StoredPiece]
 ) -> npt.NDArray[np.object_]:
-    """Return the name of each vertex's object or group in the file, empty for none, (V,)."""
+    """Return the name of the object or group of each vertex, (V,); "" if it has none."""
     names = np.full(count, "", object)
     start = 0
     for piece in stored:

@@ -1,4 +1,4 @@
-"""Bodies: the meshes of an avatar, whose vertices depend on the pose."""
+"""Bodies, the meshes of an avatar; a pose gives their vertices."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
 
 EYES = ("eye_left", "eye_right")  # names of bones
-LEAST = 0.01  # [mm]: smaller motion of a vertex is invisible, and is left out of a shape
+LEAST = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
 
 
 class Body(Protocol):
     """A mesh of an avatar.
 
-    name: unique within the avatar. rest: vertices at rest [mm], shape (V, 3). faces: (F, 3).
+    name: unique within the avatar.
+    rest: vertices at rest [mm], (V, 3).
+    faces: vertex numbers, (F, 3).
     """
 
     @property
@@ -35,11 +37,11 @@ class Body(Protocol):
     def faces(self) -> Integers32: ...
 
     def at(self, pose: Pose) -> Floats64:
-        """Return the vertices in a pose, relative to the body's node [mm], shape (V, 3)."""
+        """Return the vertices in a pose, relative to the body's node [mm], (V, 3)."""
         ...
 
     def normals_at(self, points: Floats64) -> Floats64:
-        """Return unit normals for vertices at `points`, shape (V, 3) each."""
+        """Return unit normals (V, 3) for the vertex positions `points` (V, 3)."""
         ...
 
 
@@ -62,8 +64,7 @@ class Skin:
 class PartBody:
     """A part of a scene, such as an eyeball, teeth or hair.
 
-    bone: name of the node to which the part belongs: the cranium, or the part's own bone, which
-    moves the part as a whole.
+    bone: name of the part's node, which is the cranium, or the bone that moves the whole part.
     """
 
     part: Any
@@ -90,7 +91,7 @@ class PartBody:
 def bodies_of_parts(
     scene: FaceScene, *, eyes_are_nodes: bool, wanted: Callable[[Any], bool] = lambda _: True
 ) -> list[PartBody]:
-    """Return the parts of a scene at rest.
+    """Return those parts of a scene, at rest, for which `wanted` is true.
 
     Parts on the mandible belong to the node of the cranium, and shapes move them.
     """
@@ -106,10 +107,11 @@ def bodies_of_parts(
 
 @dataclass(frozen=True)
 class Shaped:
-    """A body with its named shapes.
+    """A body with K named shapes; K is 0 for a body without motion.
 
-    targets, bends: changes of vertices [mm] and of unit normals by each shape, (K, V, 3) float32; K
-    is 0 for a body without motion.
+    normals: unit normals at rest, (V, 3).
+    targets: displacements of vertices by each shape [mm], (K, V, 3), float32.
+    bends: changes of unit normals by each shape, (K, V, 3), float32.
     """
 
     body: Body
@@ -119,7 +121,7 @@ class Shaped:
 
 
 def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[Pose, Pose]]) -> list[Shaped]:
-    """Return bodies with a shape for each pair of a pose and its reference pose."""
+    """Give bodies a shape for each pair of a pose and its reference pose."""
     return [_shaped(body, poses) for body in bodies]
 
 
@@ -144,7 +146,7 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
 
 
 def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
-    """Return changes of unit normals between two sets of vertices, shape (V, 3) each."""
+    """Return changes of unit normals (V, 3) between the positions `before` and `moved` (V, 3)."""
     bent = body.normals_at(moved) - body.normals_at(before)
     bent[np.linalg.norm(bent, axis=1) < 0.005] = 0.0  # 0.3 degrees
     return bent

@@ -1,7 +1,7 @@
-"""Curves of ARKit's shapes over time, by which named shapes follow a simulated face.
+"""Compute curves of ARKit's shapes over time, with which an avatar follows a simulated face.
 
-Muscles, eyes and head follow their controls with different delays. The shapes of an avatar follow
-their weights at once, so their curves are delayed in the same way.
+Muscles, eyes and head of a simulated face follow their controls with different delays. The shapes
+of an avatar follow their weights without delay, so the curves of weights are delayed instead.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ from ..scenes import Scene
 
 
 def as_seen(times: Floats64, curves: Mapping[str, Floats64]) -> dict[str, Floats64]:
-    """Return values of controls at these times [s], (N,) each, delayed as in the visible face."""
+    """Delay curves of controls as the visible face does: name -> values at `times`, (N,).
+
+    times: [s], (N,).
+    """
     return {
         name: np.interp(times - lead_of(name, LEAD), times, values)
         for name, values in curves.items()
@@ -34,10 +37,12 @@ def shape_curves(
     activations: Mapping[str, Floats64],
     controls: Mapping[str, Floats64],
 ) -> Floats64:
-    """Return the visible amount of each of ARKit's shapes in N frames, in Apple's order, (N, 52).
+    """Return the visible amount of each ARKit shape in N frames, in Apple's order, (N, 52).
 
-    activations: sums for controls of the lowest layer, (N,) each. controls: set values of controls,
-    (N,) each. Raises UserError for a scene without muscles.
+    times: [s], (N,).
+    activations: control of the lowest layer -> sums in each frame, (N,).
+    controls: control -> set values in each frame, (N,).
+    Raises UserError for a scene without muscles.
     """
     curves = as_seen(times, solved(scene, ARKIT_SHAPES, activations, controls))
     still = np.zeros(len(times))
@@ -45,16 +50,16 @@ def shape_curves(
 
 
 def nearest_weights(targets: Floats32, displacements: Floats64, curves: Floats64) -> Floats64:
-    """Return the weights from 0 to 1, (N, K), whose sums of targets are nearest to a motion.
+    """Fit weights, 0 to 1, (N, K), so that sums of targets approximate a motion.
 
-    Many weights give equally near sums. Of these, the weights nearest to the curves are taken, so
-    that weights keep the meaning of their names.
+    Different weights may fit equally well. Then those nearest to the curves are taken, so that
+    weights keep the meaning of their names.
 
-    targets: shape (K, V, 3). displacements: of the vertices from rest in each frame, in the same
-    unit, shape (N, V, 3). curves: the expected weights, shape (N, K).
+    targets: displacements by each shape, (K, V, 3). displacements: displacements of the vertices
+    from rest in each frame, in the same unit, (N, V, 3). curves: expected weights, (N, K).
     """
-    # Importance of the curves, relative to the mean square of a target. With a tenth of it,
-    # weights differ from the curves by 0.6; with ten times as much, the fit is a fifth worse.
+    # Weight of the curves, relative to the mean square of a target. With a tenth of this value,
+    # weights differ from the curves by 0.6; with ten times this value, the fit is a fifth worse.
     trust = 0.03
     rows = targets.reshape(len(targets), -1).astype(np.float64)
     products = rows @ rows.T

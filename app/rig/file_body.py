@@ -1,10 +1,8 @@
-"""The mesh of a file as one body: every vertex follows the simulated skin or a bone, or rests.
+"""The mesh of a file as one body; each vertex follows the simulated skin or a bone, or is fixed.
 
-The skin of a scene has the file's own vertices, so these have exactly the scene's places. Skin
-behind the lips, the bag, is not simulated. A harmonic function stretches it between the edge of the
-lips and both jaws.
-
-Source of the harmonic function: the Laplace equation with uniform weights on the mesh's edges.
+The skin of a scene has vertices of the file, which take exactly their simulated positions. Skin
+behind the lips, the bag, is not simulated. A harmonic function stretches it between the edges of
+the lips and both jaws. It solves the Laplace equation with equal weights for all edges.
 """
 
 from __future__ import annotations
@@ -31,8 +29,8 @@ from .bodies import EYES
 from .pieces import FilePiece
 from .poses import CRANIUM, Pose
 
-LIP_HEIGHT = 10.0  # [mm]: height over which motion changes from one jaw to the other
-ROOTED = 1.5  # [mm]: roots of lashes may be this much farther from the skin than the nearest root
+LIP_HEIGHT = 10.0  # [mm]; height over which motion changes from one jaw to the other
+ROOTED = 1.5  # [mm]; roots of lashes may be this much farther from the skin than the nearest root
 TONGUE = "tongue"  # name of a part
 TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the file
 
@@ -40,8 +38,8 @@ TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the 
 class FileBody:
     """A body with all vertices of a file [mm], in the file's order.
 
-    pivots: name of an eyeball's bone -> centre of the eyeball [mm], (3,). in_bag: vertices behind
-    the lips that are not simulated, shape (n,).
+    pivots: bone of an eyeball -> centre of the eyeball [mm], (3,).
+    in_bag: numbers of the vertices behind the lips that are not simulated, (n,).
     """
 
     name = "head"
@@ -71,7 +69,7 @@ class FileBody:
             role = f"eye_{eye.name}"
             layers = [self.rest[piece.vertices] for piece in pieces if piece.role == role]
             balls = [sphere_of(points, eye.centre, eye.radius) for points in layers]
-            if balls:  # the largest ball: an iris is smaller
+            if balls:  # the largest ball, because an iris is smaller
                 self.pivots[role] = max(balls, key=lambda ball: ball[1])[0]
         piece = pieces_of(self.faces, len(self.rest))
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
@@ -84,7 +82,7 @@ class FileBody:
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
     def at(self, pose: Pose) -> Floats64:
-        """Return the vertices in a pose, shape (V, 3)."""
+        """Return the vertices in a pose [mm], (V, 3)."""
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
@@ -115,17 +113,20 @@ class FileBody:
         return normals
 
     def _between_jaws(self, numbers: Integers, mandible: Floats64) -> Floats64:
-        """Move vertices between the jaws; low vertices far from the throat follow the mandible."""
+        """Move n vertices between the jaws; low vertices far from the throat follow the mandible.
+
+        mandible: matrix (4, 4). Returns positions [mm], (n, 3).
+        """
         points = self.rest[numbers]
         share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
-        # At the throat the share is 0.
+        # At the throat the weight is 0.
         share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)
         moved: Floats64 = points + share[:, None] * (moved_points(mandible, points) - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SkinPart:
-        """Attach lashes and brows to the skin; each vertex turns with its piece's nearest root."""
+        """Attach lashes and brows to the skin; a vertex turns with its piece's nearest root."""
         numbers = self._pieces["on_skin"]
         points = self.rest[numbers]
         distance = closest_points(points, head.vertices, head.faces).distances
@@ -143,7 +144,10 @@ class FileBody:
 
 
 class _Bag:
-    """Skin behind the lips that is not simulated; its deep half moves with the jaws."""
+    """Skin behind the lips that is not simulated.
+
+    deep: numbers of the vertices in its deeper half, which moves with the jaws.
+    """
 
     def __init__(self, numbers: Integers, faces: Integers32, rest: Floats64) -> None:
         depth = rest[numbers, 2]
@@ -163,14 +167,14 @@ class _Bag:
             self._solver = scipy.sparse.linalg.splu(laplacian[:, self._free].tocsc())
 
     def stretch(self, moved: Floats64, rest: Floats64) -> None:
-        """Write the places of the other half, between placed vertices, into `moved` (V, 3)."""
+        """Write positions of the other half into `moved` (V, 3), which has all other positions."""
         if self._solver is not None:
             ways = (moved - rest)[self._others]
             moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
 
 
 def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
-    """Return, for each vertex of a file, the first vertex at the same place, shape (V,)."""
+    """Return, for each vertex of a file, the first vertex that coincides with it, (V,)."""
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
     landmarks = head.file_vertices[head.landmarks]
     joined, _ = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
@@ -180,7 +184,7 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
-    """Return the number of each file vertex in the skin, -1 for other vertices, shape (V,)."""
+    """Return, for each vertex of a file, its number in the skin, or -1, (V,)."""
     place = np.full(len(same), -1, np.int64)
     place[head.file_vertices] = np.arange(len(head.file_vertices))
     return np.where(place >= 0, place, place[same])
@@ -189,9 +193,10 @@ def places_in_skin(head: FittedHead, same: Integers) -> Integers:
 def with_own_tongue(
     head: FittedHead, rest: Floats64, numbers: Integers, faces: Integers32
 ) -> tuple[Part, ...]:
-    """Replace the tongue in a head's parts by the file's tongue, which bends like the built-in one.
+    """Replace the built-in tongue in a head's parts by the file's tongue, which bends like it.
 
-    rest: all vertices of the file [mm]. numbers: the tongue's vertices. faces: all of the file.
+    rest: all vertices of the file [mm], (V, 3). numbers: vertices of the tongue, (n,). faces: all
+    triangles of the file, (F, 3).
     """
     place = np.full(len(rest), -1, np.int32)
     place[numbers] = np.arange(len(numbers))
@@ -203,7 +208,7 @@ def with_own_tongue(
 def _part(
     name: str, points: Floats64, faces: Integers32, bone: str, roots: npt.NDArray[np.int32] | None
 ) -> Part:
-    """Make a part of vertices of the file."""
+    """Make a part of points [mm] (n, 3) and faces (m, 3)."""
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
     normals = vertex_normals(points, faces).astype(np.float32)
     return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)

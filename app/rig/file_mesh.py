@@ -1,8 +1,8 @@
-"""Writes a mesh file other than glTF, such as OBJ or PLY, as glTF, with its vertices in order.
+"""Write the mesh of a file, such as OBJ or PLY, as glTF, and keep the order of its vertices.
 
-A vertex with several texture coordinates or normals becomes several vertices in glTF. The first
-keeps its number; the others follow after the last vertex of the file. Coordinates keep the file's
-numbers, and the root node converts them to metres, y up. Polygons are written as triangles.
+A vertex with several texture coordinates or normals becomes several vertices in glTF. The first of
+them keeps the number; the others come after the last vertex of the file. Coordinates are copied,
+and the root node converts them to metres, y up. Polygons are written as triangles.
 """
 
 from __future__ import annotations
@@ -25,19 +25,21 @@ from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb, picture_kind
 from .surface import METRES
 
-# Usual units of files [mm], and the factor by which a face's size may differ from the usual size.
+# Usual units of files [mm], and the greatest factor between a face's size and the usual size.
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # greatest number of 16 bits; glTF forbids it as a vertex's number
+SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex number
 
 
 @dataclass(frozen=True)
 class SplitVertices:
-    """The n glTF vertices of a file; the first V are the file's vertices.
+    """The n glTF vertices of a file; the first V are the vertices of the file.
 
-    vertex: number in the file, shape (n,). uv, normal: numbers, -1 for none, shape (n,).
-    corners: glTF vertices of the triangles, shape (F, 3).
+    vertex: vertex number in the file, (n,).
+    uv: row of the texture coordinates, or -1, (n,).
+    normal: row of the normal, or -1, (n,).
+    corners: glTF vertices of the triangles, (F, 3).
     """
 
     vertex: Integers
@@ -78,7 +80,10 @@ class FileMeshWriter:
         self._materials: dict[int, int] = {}
 
     def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
-        """Add the mesh with the chosen triangles, (F,); return its number."""
+        """Add the mesh with those triangles whose flag in `chosen` (F,) is set; return its number.
+
+        names: names of the shapes.
+        """
         attributes = self._attributes()
         targets = self._targets()
         more = {"targets": targets} if targets else {}
@@ -90,7 +95,10 @@ class FileMeshWriter:
         return self._glb.add("meshes", mesh)
 
     def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats64) -> int:
-        """Add a mesh of chosen triangles (F,), around a pivot (3,) in the file's coordinates."""
+        """Add a mesh without shapes of the triangles whose flag in `chosen` (F,) is set.
+
+        pivot: origin of the mesh, in the file's coordinates, (3,). Returns the mesh's number.
+        """
         split = self._split
         corners = split.corners[chosen]
         used, number = np.unique(corners, return_inverse=True)
@@ -111,7 +119,7 @@ class FileMeshWriter:
         chosen: npt.NDArray[np.bool_],
         more: dict[str, Any],
     ) -> list[dict[str, Any]]:
-        """Make a primitive for each material of the chosen triangles. corners: (n, 3)."""
+        """Make a primitive for each material of the n chosen triangles; corners: (n, 3)."""
         short = np.uint16 if corners.max(initial=0) < SHORT else np.uint32
         materials = self._painted.material[chosen]
         primitives = []
@@ -133,7 +141,7 @@ class FileMeshWriter:
         }
 
     def _painted_normals(self) -> Floats64:
-        """Return unit normals at rest, (n, 3); smooth normals if the file has none."""
+        """Return unit normals at rest, (n, 3); they are smooth where the file has none."""
         split = self._split
         normals = (self._shaped.normals @ self._to_file.rotation.T)[split.vertex]
         has_own = split.normal >= 0
@@ -148,7 +156,7 @@ class FileMeshWriter:
         return unit_vectors(normals)
 
     def _paint(self, chosen: Integers) -> dict[str, int]:
-        """Add texture coordinates, v down, and colours of chosen vertices, if the file has any."""
+        """Add texture coordinates and colours of some glTF vertices, if the file has any."""
         painted = self._painted
         split = self._split
         found = {}
@@ -187,7 +195,7 @@ class FileMeshWriter:
         return self._materials[number]
 
     def _look(self, source: Material, material: dict[str, Any]) -> None:
-        """Write colour, opacity and picture of a material."""
+        """Write colour, opacity and texture of a file's material into a glTF material."""
         rough = material["pbrMetallicRoughness"]
         material["name"] = source.name
         if source.look.opacity < 1.0:
@@ -195,7 +203,7 @@ class FileMeshWriter:
         rough["baseColorFactor"] = [*source.look.colour, source.look.opacity]
         if source.picture is None:
             return
-        # Ignore a black colour with a picture: some old programs write it.
+        # Colours beside a texture are ignored, because some old programs write black.
         rough["baseColorFactor"] = [1.0, 1.0, 1.0, source.look.opacity]
         content, name = source.picture
         kind = picture_kind(content)
@@ -225,7 +233,7 @@ class FileMeshWriter:
 def root_matrix(to_millimetres: Similarity) -> Floats64:
     """Return the matrix (4, 4) from coordinates of a file to metres, y up, face along z.
 
-    Axes turn by right angles only. A usual unit replaces a measured unit near it.
+    Axes are rotated by right angles only. A usual unit near the measured unit replaces it.
     """
     rotation = to_millimetres.rotation
     axes = np.zeros((3, 3))
@@ -239,7 +247,7 @@ def root_matrix(to_millimetres: Similarity) -> Floats64:
 
 
 def unit_of(scale: float) -> float:
-    """Return the unit of a file [mm]. scale: the unit at which the face has its usual size [mm]."""
+    """Return the unit of a file [mm]; scale: the unit for which a face has the usual size [mm]."""
     unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
     return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
 

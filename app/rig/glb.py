@@ -1,4 +1,4 @@
-"""Writes a binary glTF file (.glb): a chunk of JSON, and a chunk of numbers for the JSON.
+"""Write a binary glTF file (.glb), which has a chunk of JSON and a chunk of binary data.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers, accessors) and 4 (GLB).
 """
@@ -27,10 +27,11 @@ ALIGNMENT = 4  # [bytes], of chunks and of arrays in them
 
 
 class Glb:
-    """The content of one file, in the order of its addition.
+    """The content of a file, to which items are added.
 
-    parts, numbers: document and binary chunk of an existing file to extend; None for a new file.
-    times: times of the keyframes [s], shape (N,); values between them are linear.
+    times: times of the keyframes [s], (N,); values between them are interpolated linearly.
+    parts: document of an existing file that is extended; None for a new file.
+    numbers: binary chunk of this file.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class Glb:
         return bytes(self._numbers)
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
-        """Add a node, mesh, material, ... to the list called `kind`; return its number there."""
+        """Add an item to the list `kind`, such as "nodes" or "meshes"; return its number there."""
         items = self.parts.setdefault(kind, [])
         items.append(item)
         return len(items) - 1
@@ -68,9 +69,10 @@ class Glb:
     def accessor(
         self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
     ) -> int:
-        """Add an array with a number, a vector or a matrix (by columns) in each row.
+        """Add an array whose rows are numbers, vectors or matrices (by columns); return its number.
 
-        is_bounded: whether to add the least and greatest values; positions and times need these.
+        target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER or None.
+        is_bounded: whether to add minima and maxima, which positions and times need.
         """
         accessor: dict[str, Any] = {
             "bufferView": self._view(np.ascontiguousarray(values).tobytes(), target),
@@ -84,12 +86,12 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
-        """Add vectors (V, 3) of which most are zero; only the non-zero vectors take room."""
+        """Add vectors (V, 3) of which most are 0, stored sparsely; return the array's number."""
         count = len(vectors)
         places = np.flatnonzero(vectors.any(axis=1))
         if not len(places):
             return self._nothing(count)
-        if len(places) > 0.8 * count:  # indices would take more room
+        if len(places) > 0.8 * count:  # with indices, the array would be larger
             return self.accessor(vectors, ARRAY_BUFFER, is_bounded=True)
         short = np.uint16 if count <= 65535 else np.uint32
         numbers = places.astype(short)
@@ -126,22 +128,23 @@ class Glb:
     def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
         """Add a picture (H, W) or (H, W, 3), top row first, as a texture.
 
-        Returns the reference to the texture for a material.
-
-        kind: "jpeg", or "png" for a lossless picture.
+        kind: "jpeg", or "png" for a lossless picture. Returns the reference for a material.
         """
         file = io.BytesIO()
-        # Quality chosen by eye: no blocks in skin, a sixth of the PNG's size.
+        # The quality is chosen by eye: skin shows no blocks, and the size is a sixth of a PNG's.
         PIL.Image.fromarray(image).save(file, kind, quality=92, subsampling=0)
         return {"index": self.add("textures", {"source": self.image(file.getvalue(), kind)})}
 
     def image(self, content: bytes, kind: str) -> int:
-        """Add the unchanged content of a picture's file, "png" or "jpeg"; return its number."""
+        """Add the content of a picture file, "png" or "jpeg", unchanged; return its number."""
         view = self._view(content, None)
         return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
     def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
-        """Add a node's "translation", "rotation" or "weights" at each time, first axis N."""
+        """Add keyframes of a node.
+
+        path: "translation", "rotation" or "weights". values: value at each time, (N, ...).
+        """
         if self._input is None:
             self._input = self.accessor(self._times.astype(np.float32), is_bounded=True)
         rows = values.ravel() if path == "weights" else values
@@ -152,7 +155,10 @@ class Glb:
         self._tracks["channels"].append(channel)
 
     def to_bytes(self, title: str, roots: Sequence[int]) -> bytes:
-        """Return the file. title: title of the motion. roots: added nodes without a parent."""
+        """Return the bytes of the file.
+
+        title: title of the animation. roots: added nodes without a parent.
+        """
         if self._input is not None:
             self.add("animations", {"name": title, **self._tracks})
         if "scenes" not in self.parts:

@@ -1,8 +1,8 @@
-"""Copies a glTF file, and appends named shapes to its meshes.
+"""Copy a glTF file, and append named shapes to its meshes.
 
-Nodes, skins, materials, other meshes, animations, extras and extensions stay unchanged. Data in
-other files or in text move into the single binary chunk. Where the file has weights for its own
-shapes, weight 0 is added for each new shape.
+Nodes, skins, materials, other meshes, animations, extras and extensions stay unchanged. Data from
+other files, or from text, are moved into the binary chunk. Where the file has weights of shapes,
+the weight 0 is added for each new shape.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.7.2.2 (morph targets) and 4 (GLB).
 """
@@ -26,13 +26,13 @@ from risorius.geometry.arrays import Floats32, Integers
 from .bodies import Shaped
 from .glb import Glb, picture_kind
 
-TAKEN = ".risorius"  # is appended to a name that the file already has
+TAKEN = ".risorius"  # appended to the name of a shape if the file already has a shape of this name
 
 
 def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
-    """Return the document of a glTF file with all data in one buffer, and the buffer.
+    """Return the document of a glTF file, and one buffer with all its data.
 
-    folder: folder of the file's other files. Raises AssetError for missing files.
+    folder: folder of other files that the document names. A missing file raises AssetError.
     """
     text, data = chunks_of(content)
     document: dict[str, Any] = json.loads(text.decode("utf-8-sig"))
@@ -45,7 +45,7 @@ def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
 
 
 def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
-    """Join all data of a document; its views and pictures then refer to the joined data."""
+    """Join all data of a document into one buffer, and make the document refer to it."""
     data = bytearray()
     starts = []
     for buffer in document.get("buffers", []):
@@ -74,7 +74,7 @@ def _gathered(document: dict[str, Any], binary: bytes, folder: Path) -> bytes:
 
 @dataclass(frozen=True)
 class _Changes:
-    """Changes of a primitive's vertices by the new shapes, in its own coordinates, (K, n, 3)."""
+    """Changes of a primitive's n vertices by K shapes, in its coordinates, (K, n, 3)."""
 
     places: Floats32
     normals: Floats32
@@ -86,7 +86,7 @@ class GltfShapes:
     def __init__(
         self, glb: Glb, shaped: Shaped, to_millimetres: Similarity, cut: LipCut | None
     ) -> None:
-        """cut: the cut between the lips, whose doubled vertices the shapes include."""
+        """cut: the cut between the lips; its doubled vertices are vertices of `shaped`, too."""
         doubled = np.zeros(0, np.int64) if cut is None else cut.sources
         count = len(shaped.body.rest) - len(doubled)
         self._sources = np.append(np.arange(count), doubled)  # the file's vertex for each vertex
@@ -104,7 +104,8 @@ class GltfShapes:
     ) -> None:
         """Add the shapes to all meshes that they move.
 
-        pieces: where the file stores vertices. vertices: numbers for each piece, see `vertices_of`.
+        pieces: meshes of the file. vertices: vertex numbers of each piece, see `vertices_of`.
+        names: names of the shapes. extras: added to the extras of these meshes.
         """
         changes: dict[int, dict[int, _Changes]] = {}
         for piece, own in zip(pieces, vertices, strict=True):
@@ -117,7 +118,7 @@ class GltfShapes:
                 self._append_to(mesh, of_mesh, names, extras)
 
     def _changes(self, piece: StoredPiece, own: Integers) -> _Changes:
-        """Return the changes of a piece in the coordinates of its primitive."""
+        """Return the changes of a piece with the vertices `own`, in its primitive's coordinates."""
         turn = self._to_file.rotation
         matrices = np.broadcast_to(piece.to_scene, (piece.count, 3, 3))
         matrices = matrices[self._sources[own] - own[0]]
@@ -139,7 +140,7 @@ class GltfShapes:
         names: Sequence[str],
         extras: Mapping[str, Any],
     ) -> None:
-        """Add the shapes to all primitives of a mesh, because glTF requires equal numbers."""
+        """Add the shapes to all primitives of a mesh; glTF requires equal numbers of shapes."""
         mesh = self._document["meshes"][number]
         old = max(len(each.get("targets", [])) for each in mesh["primitives"])
         for place, primitive in enumerate(mesh["primitives"]):
@@ -165,7 +166,7 @@ class GltfShapes:
         self._weigh_nodes(number, old, len(names))
 
     def _weigh_nodes(self, mesh: int, old: int, added: int) -> None:
-        """Add zero weights for new shapes to nodes and animations with weights of a mesh."""
+        """Add weights 0 of new shapes to nodes and animations that have weights of a mesh."""
         nodes = [
             place for place, node in enumerate(self._document["nodes"]) if node.get("mesh") == mesh
         ]
@@ -189,7 +190,7 @@ class GltfShapes:
                     sampler["output"] = wide
 
     def _widened(self, accessor: int, old: int, added: int) -> int:
-        """Add weights of `old` shapes at each time, each followed by `added` zeros."""
+        """Copy an array with weights of `old` shapes, and add `added` zeros at each time."""
         found = self._document["accessors"][accessor]
         view = self._document["bufferViews"][found["bufferView"]]
         kind = np.dtype(COMPONENTS[found["componentType"]])

@@ -1,7 +1,7 @@
-"""Cuts sealed lips in the primitives of a glTF file, by doubling the vertices along the cut.
+"""Cut sealed lips in the primitives of a glTF file by doubling the vertices along the cut.
 
-A doubled vertex has all attributes of its original, and the changes by the file's own shapes. A cut
-primitive gets new arrays, because other primitives may use the old ones.
+A doubled vertex has all attributes of its original, and its displacements by shapes of the file. A
+cut primitive gets new arrays, because other primitives may use the old arrays.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
 
 def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
-    """Return each piece's vertices by their numbers in the mesh, with a cut's vertices last."""
+    """Return the vertex numbers of each piece in the mesh; those that a cut adds come last."""
     found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)
@@ -42,7 +42,8 @@ def cut_primitives(
 ) -> None:
     """Double the vertices of the primitives that a cut crosses.
 
-    file: the same document, as read. vertices: numbers for each piece, see `vertices_of`.
+    file: the file from which `glb` was made. vertices: vertex numbers of each piece, see
+    `vertices_of`.
     """
     done = set()
     for piece, numbers in zip(pieces, vertices, strict=True):
@@ -68,7 +69,7 @@ def cut_primitives(
 
 
 def _rows_of(glb: Glb, file: GltfFile, accessor: int, rows: Integers, name: str) -> int:
-    """Add an accessor with some rows of another accessor; numbers of bones stay integers."""
+    """Add an accessor with some rows of another accessor; bone numbers stay integers."""
     values = file.values(accessor)[rows]
     if values.shape[1] == 1:  # a scalar attribute of some program
         values = values[:, 0]

@@ -1,10 +1,10 @@
-"""Errors of sums of shapes against the simulation, and pairs of shapes that need a corrective.
+"""Measure errors of sums of shapes against the simulation, and make correctives for pairs.
 
-Programs add shapes, but real skin does not: an open mouth puckers less, and a shut lid cannot shut
-again. A corrective shape for a pair of shapes removes the error: programs add it with the product
-of the pair's weights.
+Programs add the displacements of shapes. In reality these do not add up: an open mouth puckers
+less, and a shut lid cannot shut again. A corrective shape removes the error of a pair of shapes.
+Its weight is the product of the pair's weights.
 
-Source: for correctives, Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
+Source of correctives: Lewis, Anjyo, Rhee, Zhang, Pighin, Deng 2014, "Practice and theory of
 blendshape facial models", section 4 (combination shapes).
 """
 
@@ -32,16 +32,17 @@ PAIRS = (  # sums of shapes that move the same skin
     ("eyeBlinkLeft", "eyeLookDownLeft"),
     ("noseSneerLeft", "mouthUpperUpLeft"),
 )
-TRIED = 4  # simulated pairs for each chosen pair
+TRIED = 4  # number of simulated pairs per chosen pair
 OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Error of a sum of shapes against the simulation [mm].
+    """Error of a sum of shapes against the simulation.
 
-    names: names of the shapes. most: largest error of a vertex. mean: root mean square over skin
-    that the simulation moves.
+    names: names of the shapes.
+    most: greatest error of a vertex [mm].
+    mean: root mean square of the error over the skin that the simulation moves [mm].
     """
 
     names: tuple[str, ...]
@@ -53,9 +54,10 @@ class Difference:
 
 
 class Sums:
-    """Adds shapes of a scene's skin, and compares the sums with the simulation.
+    """Sums of shapes of a scene's skin, which are compared with the simulation.
 
-    corrected: pairs whose correctives are included; `poses` has the poses of these pairs.
+    poses: name of a shape -> its pose and its reference pose.
+    corrected: pairs whose correctives are added; `poses` has their poses, too.
     """
 
     def __init__(
@@ -77,8 +79,8 @@ class Sums:
     def pairs(self) -> list[tuple[str, str]]:
         """Pairs of shapes that may occur together.
 
-        Opposite shapes, such as a look up and a look down, and shapes that are shares of others are
-        left out.
+        Opposite shapes, such as a look up and a look down, are left out. So are shapes that are
+        shares of other shapes.
         """
         shares = self._scene.simulation.controls.tables.share_of
         names = [name for name in self._displacements if name not in shares]
@@ -91,7 +93,7 @@ class Sums:
         return self._difference(tuple(names), self.sum(dict.fromkeys(names, 1.0)), displacement)
 
     def sum(self, weights: Mapping[str, float]) -> Floats64:
-        """Return the skin's displacements [mm], shape (V, 3), for weights of shapes."""
+        """Return displacements of the skin [mm], (V, 3), for weights of shapes."""
         total = np.zeros_like(self._scene.rest_positions)
         for name, weight in weights.items():
             total += weight * self._displacements[name]
@@ -112,7 +114,7 @@ class Sums:
         return Difference(names, float(off.max(initial=0.0)), float(np.sqrt(square)))
 
     def shared(self, first: str, second: str) -> float:
-        """Return how much skin both shapes move, for comparing pairs [mm4]."""
+        """Return how much skin two shapes both move [mm^4], to compare pairs."""
         lengths = [np.linalg.norm(self._displacements[name], axis=1) for name in (first, second)]
         return float((self._areas * lengths[0] * lengths[1]).sum())
 
@@ -130,9 +132,9 @@ def table(
 def worth_correcting(
     scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]], count: int, *, progress: bool
 ) -> list[tuple[str, str]]:
-    """Return at most `count` pairs of shapes with the largest errors of their sums, largest first.
+    """Return at most `count` pairs of shapes whose sums have the greatest errors, greatest first.
 
-    TRIED times `count` pairs are simulated: the pairs that share most skin.
+    TRIED times `count` pairs are simulated, namely those that share most skin.
     """
     sums = Sums(scene, poses)
     tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]
@@ -146,7 +148,7 @@ def worth_correcting(
 def corrective_poses(
     scene: FaceScene, pairs: Sequence[tuple[str, str]]
 ) -> dict[str, tuple[Pose, Pose]]:
-    """Return, for each pair, the pose with both shapes at 1, and the rest pose; see `corrected`."""
+    """Return for each pair the pose with both shapes at 1, and the rest pose; see `corrected`."""
     rest = rest_in(scene, {})
     return {
         f"{first}_{second}": (rest_in(scene, {first: 1.0, second: 1.0}), rest)
@@ -155,7 +157,7 @@ def corrective_poses(
 
 
 def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[str]) -> Shaped:
-    """Turn the last shapes, poses of pairs, into differences from the sums of the pairs' shapes."""
+    """Subtract the shapes of each pair from the last shapes, which are the poses of the pairs."""
     if not len(shaped.targets):
         return shaped
     targets = shaped.targets.copy()
@@ -169,7 +171,7 @@ def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[
 
 
 def _are_opposite(first: str, second: str) -> bool:
-    """Whether two shapes exclude each other, or are two sides that hardly share skin."""
+    """Whether two shapes exclude each other, or move two sides that hardly share skin."""
     if (first, second) in OPPOSITE or (second, first) in OPPOSITE:
         return True
     if twin_of(first) == second and not first.startswith("mouth"):

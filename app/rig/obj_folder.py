@@ -1,9 +1,9 @@
-"""Writes an avatar as a folder of OBJs, one per shape, for programs that make targets of meshes.
+"""Write an avatar as a folder of OBJs, one per shape, for programs that make targets of meshes.
 
-All files have the same vertices in the same order: `neutral.obj` at rest, and every other file with
-its shape at 1. A user's OBJ keeps its lines, except for moved vertices, and for polygons at a cut
-between sealed lips. Its material libraries and their pictures are copied. Any other head is written
-as triangles, body by body, in the unit of its file; the built-in head is in metres.
+All files have the same vertices in the same order. `neutral.obj` is the head at rest; every other
+file has one shape at 1. A user's OBJ keeps its lines, except for moved vertices, and for polygons
+at a cut between sealed lips. Its material libraries and their textures are copied. Any other head
+is written as triangles, body by body, in the unit of its file; the built-in head is in metres.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 
 
 def write_obj_folder(avatar: Avatar, folder: Path) -> None:
-    """Write all files."""
+    """Write all files of an avatar into a folder."""
     file = avatar.file
     text = None
     if file is not None and file.path.suffix.lower() == ".obj":
@@ -48,7 +48,7 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
 
 
 def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
-    """Yield each file's name, and displacements of each body's vertices from rest [mm], (V, 3)."""
+    """Yield the name of each file, and the displacements [mm] (V, 3) of each body in it."""
     still = [np.zeros_like(shaped.body.rest) for shaped in avatar.shapes]
     yield "neutral", still
     for number, name in enumerate(avatar.names):
@@ -62,7 +62,7 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
 
 
 def _has_plain_lines(content: bytes, file: FileHead) -> bool:
-    """Whether an OBJ's lines can stay: no line continues in the next, and no text is UTF-16."""
+    """Whether lines of an OBJ can be kept: none continues in the next, and none is UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
     return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
 
@@ -74,16 +74,16 @@ def _count_of(file: FileHead) -> int:
 
 
 def _own_text(content: bytes, file: FileHead) -> bytes:
-    """Return the text of a user's OBJ, with doubled vertices if its lips are cut."""
+    """Return the text of a user's OBJ; if its lips are cut, with doubled vertices."""
     cut = file.head.lip_cut
     return content if cut is None else _with_lips_cut(content, cut, _count_of(file))
 
 
 def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
-    """Copy the material libraries of an OBJ, and their pictures, to the same places in a folder.
+    """Copy the material libraries of an OBJ, and their textures, to the same paths in a folder.
 
-    is_kept: whether bytes are copied unchanged, or as UTF-8. Pictures that are missing, or lie
-    outside the mesh's folder, are not copied.
+    Textures that are missing, or lie outside the mesh's folder, are not copied. is_kept: whether
+    libraries are copied unchanged, or as UTF-8.
     """
     assert file.painted is not None
     source = file.path.parent
@@ -140,10 +140,11 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
 def _cut_polygons(
     corners: Sequence[int], below: Collection[tuple[int, ...]], new: Mapping[int, int]
 ) -> list[list[tuple[int, int]]]:
-    """Return a polygon after the cut, or its triangles if the cut crosses the polygon.
+    """Return a polygon after the cut; if the cut crosses the polygon, return its triangles.
 
-    A corner is a pair of its place in the polygon and its vertex. below: triangles of the lower
-    lip, with sorted vertices. new: old vertex -> new vertex for triangles of the lower lip.
+    corners: vertices of the polygon. below: triangles of the lower lip, with sorted vertices. new:
+    old vertex -> new vertex for triangles of the lower lip. Each corner of a returned polygon is a
+    pair: its position in `corners`, and its vertex.
     """
     pieces = []
     becomes: dict[int, set[int]] = {}
@@ -163,7 +164,7 @@ def _cut_polygons(
 
 
 def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
-    """Return an OBJ with new coordinates. change: displacements of its vertices [mm], (V, 3)."""
+    """Return an OBJ with moved vertices; change: displacements of the vertices [mm], (V, 3)."""
     assert file.painted is not None
     moved = file.head.to_millimetres.inverse.vectors(change)
     points = file.painted.mesh.vertices + moved

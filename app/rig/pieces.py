@@ -1,8 +1,8 @@
-"""Finds the pieces of a head's file, which are sets of connected triangles, and their roles.
+"""Find the pieces of a head's file, which are sets of connected triangles, and their roles.
 
 A piece can be an eyeball, teeth, the tongue, lashes, hair or a body. The skin, on which the
-landmarks lie, is not a piece. Form and place decide the role: eyeballs are round and lie behind
-the lids, and pieces in the mouth lie at the fitted places of the built-in teeth and tongue.
+landmarks lie, is not a piece. Shape and position decide the role: eyeballs are round and lie behind
+the lids, and pieces in the mouth lie near the fitted built-in teeth and tongue.
 """
 
 from __future__ import annotations
@@ -25,30 +25,31 @@ from ..errors import UserError
 ROLES = {  # role of a piece -> its motion
     "eye_left": "eyeball, turns with the left eye",
     "eye_right": "eyeball, turns with the right eye",
-    "upper_teeth": "upper teeth or gums, still with the cranium",
+    "upper_teeth": "upper teeth or gums, fixed to the cranium",
     "lower_teeth": "lower teeth or gums, moves with the mandible",
     "tongue": "tongue, bends",
     "mouth": "inside of the mouth, stretches between both jaws",
     "on_skin": "lies on the skin, moves with it: lashes, brows, a beard",
-    "hair": "hair or a helmet, still with the cranium",
-    "body": "body or clothes, still",
+    "hair": "hair or a helmet, fixed to the cranium",
+    "body": "body or clothes, does not move",
 }
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks without the jaw line
-BESIDE = 12.0  # [mm] from these landmarks to lashes and brows, at most
+BESIDE = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
 CHIN = 8  # landmark
-LOWER_LIP = 57  # landmark below the middle of the lower lip
+LOWER_LIP = 57  # landmark below the centre of the lower lip
 NOSE_BRIDGE = 27  # landmark
 
 
 @dataclass(frozen=True)
 class FilePiece:
-    """Connected vertices of a file, and their role.
+    """Connected vertices of a file, with a role.
 
-    number: number of the piece in options. vertices: vertices in the file, shape (n,). role: one of
-        ROLES.
-    middle: middle of the bounding box [mm], shape (3,). name: name of the object or group in the
-        file, or empty.
+    number: number of the piece in options.
+    vertices: vertex numbers in the file, (n,).
+    role: one of ROLES.
+    middle: centre of the bounding box [mm], (3,).
+    name: name of the object or group in the file, or "".
     """
 
     number: int
@@ -67,8 +68,10 @@ def find_pieces(
 ) -> list[FilePiece]:
     """Return the pieces of a file except the skin, in the order of the file.
 
-    rest: all vertices [mm], shape (V, 3). faces: shape (F, 3). skin: vertices of the skin.
-    names: name of each vertex's object or group, shape (V,).
+    rest: all vertices of the file [mm], (V, 3).
+    faces: all triangles, (F, 3).
+    skin: vertex numbers of the skin.
+    names: name of the object or group of each vertex, (V,).
     """
     piece = pieces_of(faces, len(rest))
     order = np.argsort(piece, kind="stable")
@@ -95,7 +98,7 @@ def find_pieces(
 def _role_of(
     points: Floats64, middle: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
 ) -> str:
-    """Return the role of a piece. points: vertices of the piece [mm], shape (n, 3)."""
+    """Return the role of a piece; points: vertices of the piece [mm], (n, 3)."""
     for eye in head.eyes:
         if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
@@ -117,12 +120,15 @@ def _role_of(
 def _is_on_face(
     points: Floats64, middle: Floats64, distance: Floats64, landmarks: Floats64
 ) -> bool:
-    """Whether a piece is a lash, a brow or the like. distance: from points to the skin [mm]."""
+    """Whether a piece is a lash, a brow or similar.
+
+    distance: distances of the points from the skin [mm], (n,). landmarks: [mm], (68, 3).
+    """
     face = landmarks[FACE]
     is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
     # Glasses span both eyes and hang in front of them.
     is_before = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
-    # A lash ends within 20 mm of the lid.
+    # Lashes are shorter than 20 mm.
     return bool(is_on_face.all() and distance.max() < 20.0 and not is_before)
 
 
@@ -140,7 +146,7 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
 
 
 def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
-    """Return the role of a piece at the built-in teeth or tongue; None for other pieces."""
+    """Return the role of a piece near the built-in teeth or tongue; None for other pieces."""
     parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
         return None
@@ -156,12 +162,11 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
     # A row of teeth is hollow in its middle; a tongue and a palate are not.
     is_middle = np.abs(points[:, 0] - middle[0]) < 0.15 * width
     is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
-    # Walls of a mouth go around the gums; a tongue that reaches into the throat has the same
-    # height.
+    # Walls of a mouth enclose the gums. A tongue may be as high if it reaches into the throat.
     if width > 0.85 * np.ptp(around[:, 0]) and height > 35.0:
         return "mouth"
     if width > 20.0 and depth > 25.0 and is_filled:
-        # A palate is above the teeth's edges, the floor of a mouth below.
+        # A palate lies above the edges of the teeth, and the floor of a mouth below them.
         if middle[1] < between < points[:, 1].max() + 5.0:
             return "tongue"
     return "upper_teeth" if middle[1] > between else "lower_teeth"
@@ -204,7 +209,7 @@ def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
 
 
 def _extent(values: Floats64) -> float:
-    """Return the greatest minus the least of some numbers; 0 for no numbers."""
+    """Return the range (maximum minus minimum) of some numbers; 0 for no numbers."""
     return float(np.ptp(values)) if len(values) else 0.0
 
 
@@ -227,7 +232,7 @@ def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[F
 
 
 def _numbers_in(text: str, count: int) -> range:
-    """Parse "3" or "4-20"; UserError for other text, and for numbers outside 1 to `count`."""
+    """Parse "3" or "4-20"; other text and numbers outside 1 to `count` raise UserError."""
     written = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6}))?", text)
     first = int(written[1]) if written else 0
     last = int(written[2] or first) if written else 0
@@ -240,7 +245,7 @@ def _numbers_in(text: str, count: int) -> range:
 
 
 def described(pieces: Sequence[FilePiece]) -> list[str]:
-    """Describe pieces in lines; neighbours of one role, such as strands of hair, share a line."""
+    """Describe pieces in lines; four or more neighbours of one role share a line."""
     lines = []
     first = 0
     while first < len(pieces):

@@ -1,4 +1,4 @@
-"""Poses in which a face has come to rest, and the names of the shapes made from them."""
+"""Make poses in which a face has come to rest, and name the shapes that are made of them."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from ..recordings.names import ARKIT, VISEMES
 from ..scenes import FaceScene
 
 KINDS = ("arkit", "units", "visemes", "expressions")
-STILL = 0.001  # [mm] in a step: a face that moves less is at rest
+STILL = 0.001  # [mm] per step; a face that moves less is at rest
 CRANIUM = "cranium"  # name of a bone
 HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
 
 @dataclass(frozen=True)
 class Pose:
-    """A face at one moment, relative to its cranium [mm].
+    """A face at one moment, relative to its cranium.
 
-    skin: vertices, shape (V, 3). matrices: name of a bone -> matrix (4, 4), for column vectors.
-    parts: name of a part -> vertices relative to the part's bone, (n, 3).
+    skin: vertices [mm], (V, 3).
+    matrices: name of a bone -> matrix for column vectors, (4, 4).
+    parts: name of a part -> vertices relative to the part's bone [mm], (n, 3).
     """
 
     skin: Floats64
@@ -48,7 +49,7 @@ def pose_of(scene: FaceScene) -> Pose:
 
 
 def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Floats64:
-    """Remove the cranium's motion from the skin (V, 3), which follows it by shares (V,)."""
+    """Remove the cranium's motion from skin (V, 3) that follows it by weights `share` (V,)."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
     turns = np.eye(3) + share[:, None, None] * (cranium[:3, :3] - np.eye(3))
@@ -57,9 +58,9 @@ def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Flo
 
 
 def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
-    """Return the pose in which a face comes to rest with these controls, and all others at 0.
+    """Return the pose in which a face comes to rest with some controls; all others are 0.
 
-    The face starts from rest each time, so a pose does not depend on the last pose.
+    The face starts from rest each time, so a pose does not depend on earlier poses.
     """
     scene.reset()
     scene.pose(values)
@@ -70,7 +71,7 @@ def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
         scene.step(1.0 / 60.0)
         moved = float(np.abs(scene.positions - before).max())
         calm = calm + 1 if moved < STILL else 0
-        if calm == 3:  # motion that reverses is still for one step only
+        if calm == 3:  # because motion that reverses is slow for a single step
             break
         before[:] = scene.positions
     return pose_of(scene)
@@ -79,8 +80,8 @@ def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
 def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
     """Return the controls that become shapes, in the order of `kinds`; ARKit's in Apple's order.
 
-    Turns of the head are left out, because the node "cranium" makes them. Raises UserError for an
-    unknown kind.
+    Rotations of the head are left out, because the node "cranium" makes them. An unknown kind
+    raises UserError.
     """
     found: list[str] = []
     for kind in kinds:
@@ -110,6 +111,6 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
 
 
 def moved_part(part: Any, pose: Pose) -> Floats64:
-    """Return the vertices of a part in a pose, relative to the cranium, shape (n, 3)."""
+    """Return the vertices of a part in a pose, relative to the cranium [mm], (n, 3)."""
     points = pose.parts[part.name].astype(np.float64)
     return moved_points(pose.matrices[part.bone], points)

@@ -1,4 +1,4 @@
-"""Writes the built-in head or a person as an avatar: the scene's surfaces with named shapes."""
+"""Write the surfaces of a scene, with named shapes, as the avatar of a built-in head or person."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def surface_of(scene: FaceScene, shaped: Shaped) -> MovingSurface:
 
 
 def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) -> list[int]:
-    """Add pieces to a file, below the nodes of their bones; return the nodes without a bone."""
+    """Add pieces to a file as children of their bones' nodes; return the nodes without a bone."""
     roots = []
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}

@@ -1,4 +1,4 @@
-"""Writes surfaces of a scene as meshes of a glTF file, with materials and morph targets."""
+"""Write surfaces of a scene as meshes of a glTF file, with materials and morph targets."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ from .surface import METRES, MovingSurface
 class Piece:
     """A surface with its morph targets.
 
-    bone: the bone that moves the surface as a whole; None for no bone, or for the skin's weights.
-    normals: unit normals at rest, shape (V, 3).
+    bone: the bone that moves the whole surface; None for skin, and for scenes without bones.
+    normals: unit normals at rest, (V, 3).
     names: names of the K targets.
-    targets, bends: changes of vertices [mm] and normals by each target, shape (K, V, 3).
-    weights: weight of each target in each frame, shape (N, K).
+    targets: displacements of vertices by each target [mm], (K, V, 3).
+    bends: changes of unit normals by each target, (K, V, 3).
+    weights: weight of each target in each frame, (N, K).
     """
 
     surface: MovingSurface
@@ -40,9 +41,9 @@ class Piece:
 
 
 def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floats64 | None) -> int:
-    """Add a mesh whose vertices are relative to `origin`; return its number.
+    """Add a mesh whose vertices are relative to `origin` [mm], (3,); return its number.
 
-    share: how far each vertex follows the head, shape (V,); None without a head.
+    share: weight of the head's motion at each vertex, 0 to 1, (V,); None if there is no head.
     """
     surface = piece.surface
     faces: npt.NDArray[Any] = surface.faces
@@ -71,7 +72,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
     if surface.colours is not None:
         attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
     if share is not None:
-        # Refinement sums shares, and rounding may exceed their limits.
+        # Refinement sums weights, so rounding may exceed 0 or 1.
         share = np.clip(share, 0.0, 1.0)
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
@@ -91,7 +92,7 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
         mesh["weights"] = [0.0] * len(piece.targets)
-        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers expect names
+        mesh["extras"] = {"targetNames": list(piece.names)}  # all programs expect names here
     return glb.add("meshes", mesh)
 
 
@@ -100,7 +101,7 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # chosen by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
-        # Roughness, chosen by eye: shine makes parts wet.
+        # Both are chosen by eye, for shine 0 and for shine 1.
         dull_roughness = 0.75
         wet_roughness = 0.12
         rough["roughnessFactor"] = dull_roughness + surface.shine * (wet_roughness - dull_roughness)
@@ -122,11 +123,14 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
 def _normal_map(
     surface: MovingSurface, fine: assets.FineShape, wrinkles: assets.Wrinkles | None
 ) -> npt.NDArray[np.uint8]:
-    """Make a normal map (H, W, 3) of shape and resting wrinkles: along u, across u, outward."""
+    """Make a normal map (H, W, 3) of fine shape and resting wrinkles.
+
+    Its axes run along u, across u, and outward.
+    """
     assert surface.uv is not None and surface.face_uv is not None
     places = surface.uv[surface.face_uv]
     texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
-    # Convert slopes per unit of u and of v to slopes per millimetre along u and across u.
+    # Slopes per unit of u and of v become slopes per millimetre along u and across u.
     along, aside = rates(places, surface.rest[surface.faces]).swapaxes(0, 1)
     length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
     shear = (along * aside).sum(axis=1) / length
@@ -149,9 +153,9 @@ def _normal_map(
 def _resting_slopes(
     surface: MovingSurface, wrinkles: assets.Wrinkles, texels: Texels, size: int
 ) -> npt.NDArray[np.float64]:
-    """Return slopes along u and v of wrinkles that show at rest, such as folds of lids, (n, 2).
+    """Return slopes along u and v, (n, 2), of wrinkles that show at rest, such as folds of lids.
 
-    texels: texels of a map with `size` texels along each side.
+    texels: n texels of a map with (size, size) texels.
     """
     readiness = np.minimum(np.linalg.norm(wrinkles.across, axis=2), 1.0)
     amounts = wrinkles.resting[:, None] * readiness  # (V, 2)

@@ -1,4 +1,4 @@
-"""Writes bones of a scene as nodes of a glTF file; each node is at the pivot of its bone.
+"""Write bones of a scene as nodes of a glTF file; each node lies at the pivot of its bone.
 
     neck ── cranium ─┬─ eye_left, eye_right ── eyeballs
                      ├─ mandible
@@ -42,7 +42,9 @@ class Skeleton:
         *,
         skins: bool = True,
     ) -> None:
-        """used: bones that carry surfaces. motion: matrices of each bone, (N, 4, 4); None without
+        """Add the nodes to a file.
+
+        used: bones that carry surfaces. motion: bone -> matrix in each frame, (N, 4, 4); None: no
         motion. skins: whether to add a glTF skin of cranium and neck.
         """
         self._glb = glb
@@ -72,7 +74,7 @@ class Skeleton:
         self.skin = glb.add("skins", joints)
 
     def pivot(self, bone: str | None) -> Floats64:
-        """Return the place of a bone's node at rest [mm], shape (3,); the origin for None."""
+        """Return the position of a bone's node at rest [mm], (3,); None gives the origin."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
     def hang(self, node: int, bone: str) -> None:
@@ -92,7 +94,7 @@ class Skeleton:
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
         translations = METRES * local[:, :3, 3]
-        still_motion = 1e-7  # [m], or in a quaternion: smaller motion is left out
+        still_motion = 1e-7  # [m] or change of a quaternion; smaller motion is left out
         if np.abs(translations - shift).max() > still_motion:
             self._glb.animate(node, "translation", translations)
         rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(

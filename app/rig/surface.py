@@ -1,4 +1,4 @@
-"""One triangle mesh of a scene over time, for writers of files. Lengths are millimetres."""
+"""A triangle mesh of a scene over time, from which files are written; lengths are in [mm]."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
-METRES = 0.001  # in a millimetre; animation programs read plain numbers as metres
+METRES = 0.001  # metres in a millimetre; animation programs read numbers as metres
 
 
 @dataclass(frozen=True)
 class MovingSurface:
-    """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
+    """A triangle mesh over the N frames of a clip; its topology is constant.
 
     name: "skin", or the name of the part; unique within the clip.
-    rest: vertices at rest, shape (V, 3), float64.
-    faces: counter-clockwise from the visible side, shape (F, 3), int32.
-    shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as `rest`.
-    matrices: motion of the whole surface in each frame, shape (N, 4, 4), float64; None: no motion.
-    uv, face_uv: texture coordinates, shape (U, 2), and their number at each corner, shape (F, 3).
-    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None with a texture.
-    shine: 0 dull, 1 wet.
+    rest: vertices at rest, (V, 3), float64.
+    faces: vertex numbers, counter-clockwise from the visible side, (F, 3), int32.
+    shapes: vertices in each frame, before `matrices`, (N, V, 3), float32; None: always `rest`.
+    matrices: motion of the whole surface in each frame, (N, 4, 4), float64; None: no motion.
+    uv: texture coordinates, (U, 2).
+    face_uv: row of `uv` at each corner of triangles, (F, 3).
+    colours: sRGB, 0 to 1, of the vertices, (V, 3), float32; None for a surface with a texture.
+    shine: specular strength, 0 (dull) to 1 (wet).
     """
 
     name: str
@@ -39,16 +40,16 @@ class MovingSurface:
     shine: float = 0.0
 
     def at(self, frame: int) -> Floats64:
-        """Return the vertices in a frame, shape (V, 3)."""
+        """Return the vertices in a frame, (V, 3)."""
         points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
         if self.matrices is None:
             return points
         return moved_points(self.matrices[frame], points)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
-        """Return unit normals of vertices at `points` in a frame, shape (V, 3) each.
+        """Return unit normals (V, 3) for the vertex positions `points` (V, 3) in a frame.
 
-        frame: number of the frame, None for the surface at rest.
+        frame: number of the frame; None for the surface at rest.
         """
         return vertex_normals(points, self.faces)
 
@@ -66,10 +67,11 @@ class MovingSurface:
 class RefinedSurface(MovingSurface):
     """A refined surface, with the normals of its refiner.
 
-    rest_normals: normals at rest, shape (V, 3). normals: normals in each frame, shape (N, V, 3).
-    sources: the triangle of the scene's mesh that contains each triangle, shape (F,).
-    origins: where each vertex lies on the scene's mesh. refiner: makes these triangles from the
-    scene's mesh.
+    rest_normals: unit normals at rest, (V, 3).
+    normals: unit normals in each frame, (N, V, 3).
+    sources: for each triangle, the triangle of the scene's mesh that contains it, (F,).
+    origins: for each vertex, vertices of the scene's mesh and their weights.
+    refiner: the refiner that made these triangles from the scene's mesh.
     """
 
     rest_normals: Floats32 = field(kw_only=True)
@@ -79,7 +81,7 @@ class RefinedSurface(MovingSurface):
     refiner: refine.Refiner = field(kw_only=True)
 
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
-        """Return the refiner's normals, shape (V, 3)."""
+        """Return the normals of the refiner, (V, 3)."""
         normals = self.rest_normals if frame is None else self.normals[frame]
         return normals.astype(np.float64)
 

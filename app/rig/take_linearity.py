@@ -1,7 +1,7 @@
-"""Errors of sums of shapes against the simulation of a take, such as a recorded performance.
+"""Measure errors of sums of shapes against the simulation of a take, such as a performance.
 
 The weights are the curves of ARKit's shapes that `risorius export -o take.csv` writes. So the error
-is the distance between an avatar and its simulated face while both play the take.
+is the distance between an avatar and the simulated face while both play the take.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from .curves import shape_curves
 from .linearity import TRIED, Difference, Sums
 from .poses import Pose, pose_of, rest_in
 
-FRAMES_PER_SECOND = 15.0  # these frames represent the whole take
+FRAMES_PER_SECOND = 15.0  # rate at which the take is sampled
 
 
 @dataclass(frozen=True)
 class PlayedTake:
-    """A take on a face.
+    """A take that a simulated face has played.
 
-    title: title of the take. displacements: of the skin's vertices from rest in each frame [mm],
-        (N, V, 3).
-    curves: weights of ARKit's shapes, (N, 52).
+    title: title of the take.
+    displacements: displacements of the skin's vertices from rest in each frame [mm], (N, V, 3).
+    curves: weights of ARKit's shapes in each frame, (N, 52).
     """
 
     title: str
@@ -71,10 +71,10 @@ def worth_correcting_on(
     *,
     progress: bool,
 ) -> list[tuple[str, str]]:
-    """Return at most `count` pairs of ARKit's shapes whose correctives fit a take best.
+    """Return at most `count` pairs of ARKit's shapes whose correctives improve a take most.
 
     Only pairs that the take plays together on the same skin are simulated. Pairs are chosen one
-    after another: each next pair reduces the squared error most. The choice ends if none does.
+    after another; each reduces the squared error most. If no pair reduces it, the choice ends.
     """
     weights = dict(zip(ARKIT, take.curves.T, strict=True))
     sums = Sums(scene, {name: poses[name] for name in ARKIT})
@@ -95,7 +95,7 @@ def worth_correcting_on(
     shares = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
     columns = np.stack([(shares * displacement).ravel() for displacement in displacements], axis=1)
     products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
-    along = np.zeros(products.shape)  # error of each frame, projected on each corrective
+    along = np.zeros(products.shape)  # scalar products of each frame's error and each corrective
     for frame, displacement in enumerate(take.displacements):
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
         along[frame] = (shares * (displacement - sums.sum(at_once))).ravel() @ columns
@@ -133,9 +133,9 @@ def difference_on(
     poses: Mapping[str, tuple[Pose, Pose]],
     pairs: Sequence[tuple[str, str]] = (),
 ) -> Difference:
-    """Return the errors of sums on a take: the largest, and the RMS over frames and skin.
+    """Return the errors of sums on a take: the greatest, and the RMS over frames and skin.
 
-    poses: poses of ARKit's shapes, and of the pairs whose correctives are included.
+    poses: poses of ARKit's shapes, and of the pairs whose correctives are added.
     """
     sums = Sums(scene, poses, pairs)
     areas = vertex_areas(scene.rest_positions, scene.faces)

@@ -1,4 +1,4 @@
-"""Writes an avatar as a binary glTF file, in metres, y up, or as a folder of OBJs."""
+"""Write an avatar as a binary glTF file in metres, y up, or as a folder of OBJs."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes, witho
 def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> tuple[int, int]:
     """Write an avatar completely, or not at all.
 
-    Returns the size of its files [bytes], and the number of meshes in the file, or of files in the
-    folder.
+    Returns the size of the written files [bytes], and the number of meshes in the file, or the
+    number of files in the folder.
     """
     if is_folder:
         with folder_atomically(output, OWN, overwrite=False) as folder:
@@ -46,13 +46,13 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
 
 
 def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:
-    """Make the avatar of a head (None: the built-in head), and write it."""
+    """Make the avatar of a head, and write it; None is the built-in head."""
     title = head.files[0].stem if head is not None and head.files else output.stem
     write_avatar(avatar_of(head, request, say), output, title, is_folder=False)
 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:
-    """Return the whole file. title: title of the head."""
+    """Return the bytes of the glTF file of an avatar; title: title of the head."""
     if avatar.file is not None and avatar.file.painted is None:
         return _copied(avatar, avatar.file, title)
     glb = Glb()
@@ -69,7 +69,7 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
 
 
 def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
-    """Return a copy of a glTF file with the shapes, and with built-in parts if requested."""
+    """Return a copy of a glTF file with the shapes of an avatar, and with its built-in parts."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))
     cut = file.head.lip_cut
@@ -94,7 +94,7 @@ def _add_scene(glb: Glb, avatar: Avatar) -> list[int]:
 
 
 def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
-    """Add the mesh of a file, and built-in parts; return the number of its root."""
+    """Add the mesh of a file, and built-in parts; return the number of their root node."""
     to_millimetres = file.head.to_millimetres
     matrix = root_matrix(to_millimetres)
     children = _add_file_mesh(glb, avatar, file)
@@ -106,7 +106,7 @@ def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
 
 
 def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
-    """Add the mesh of a file, with its eyeballs as separate nodes; return the nodes."""
+    """Add the mesh of a file; eyeballs may be separate nodes. Returns the numbers of the nodes."""
     assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
     faces = file.body.faces
@@ -130,7 +130,7 @@ def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
 
 
 def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
-    """Add built-in parts, in metres of the face's own space; return their node."""
+    """Add built-in parts below a node that converts metres to the file's unit; return the node."""
     pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes[1:]]
     used = {piece.bone for piece in pieces if piece.bone is not None}
     skeleton = Skeleton(avatar.scene, used, glb, skins=False)
@@ -150,9 +150,10 @@ def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
 
 
 def looks_of(avatar: Avatar, eye: str, turn: Floats64) -> dict[str, Any]:
-    """Return rotations of an eye's node for each of its shapes at 1: quaternions x, y, z, w.
+    """Return the extras of an eye's node: for each shape of the eye, its rotation at 1.
 
-    turn: matrix (3, 3) from the face's axes to the node's axes.
+    A rotation is a quaternion x, y, z, w. turn: matrix (3, 3) from the face's axes to the node's
+    axes.
     """
     side = eye.removeprefix("eye_").capitalize()
     found = {}

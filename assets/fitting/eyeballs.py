@@ -1,6 +1,7 @@
-"""Eyeballs in a user's file: pieces that are balls, and sockets that enclose a ball.
+"""Find eyeballs in a user's file: pieces that are balls, and sockets that enclose a ball.
 
-A head of few triangles has neither. Its lids alone then give the place of the eyeball (organs.py).
+A head of few triangles often has neither; then the lids alone give the position of the eyeball
+(organs.py).
 """
 
 from __future__ import annotations
@@ -11,11 +12,14 @@ import numpy as np
 
 from ...geometry.arrays import Floats64
 
-FEWEST = 4  # least vertices of an eyeball; pieces with fewer are strands or cards of hair
+FEWEST = 4  # fewest vertices of an eyeball; smaller pieces are strands or cards of hair
 
 
 def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
-    """Whether a piece (n, 3) is an eyeball near `centre`, or one of its layers (iris, cornea)."""
+    """Whether a piece (n, 3) is an eyeball near `centre`, or a layer of one (iris, cornea).
+
+    centre, radius: an estimate of the eyeball [mm].
+    """
     if len(points) < FEWEST:
         return False
     low = points.min(axis=0)
@@ -33,9 +37,10 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
 
 
 def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
-    """Fit a sphere to points (n, 3); return the given one if they are no ball near it.
+    """Fit a sphere to points (n, 3); return its centre and its radius [mm].
 
-    Source: linear least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
+    If the points are no ball near the given sphere, the given centre and radius are returned. The
+    fit is linear: least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
     """
     local = points - centre
     matrix = np.column_stack([2.0 * local, np.ones(len(local))])
@@ -55,9 +60,9 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
 def ball_of_pieces(
     pieces: Sequence[Floats64], centre: Floats64, radius: float, lids: Floats64
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the largest eyeball among pieces; None without any.
+    """Centre and radius [mm] of the largest eyeball among pieces (n, 3); None if there is none.
 
-    centre, radius: an estimate. lids: landmarks of the eye, shape (6, 3); a ball that protrudes
+    centre, radius: an estimate. lids: landmarks of the eye [mm], (6, 3); a ball that protrudes
     between them is no eyeball.
     """
     found = None
@@ -66,7 +71,7 @@ def ball_of_pieces(
             continue
         middle, size = sphere_of(points, centre, radius)
         is_fitted = middle is not centre
-        most_out = 1.5  # [mm] by which the edge of a lid may lie inside the ball
+        most_out = 1.5  # [mm] that the edge of a lid may lie inside the ball
         is_behind = np.linalg.norm(lids - middle, axis=1).min() > size - most_out
         if is_fitted and is_behind and (found is None or size > found[1]):
             found = middle, size
@@ -76,12 +81,12 @@ def ball_of_pieces(
 def ball_of_socket(
     skin: Floats64, outward: Floats64, centre: Floats64, radius: float
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the ball in a socket behind the lids; None without a socket.
+    """Centre and radius [mm] of the ball in a socket behind the lids; None if there is no socket.
 
-    skin: vertices, shape (V, 3). outward: cosine of the angle between each normal and the direction
-    from `centre`, shape (V,). centre, radius: an estimate of the ball.
+    skin: vertices [mm], (V, 3). outward: cosine between each vertex normal and the direction from
+    `centre` to the vertex, (V,). centre, radius: an estimate of the ball [mm].
     """
-    most_radii = 2.0  # largest distance of the socket, in radii of the ball
+    most_radii = 2.0  # greatest distance of the socket from the centre, in radii of the ball
     facing = -0.6  # cosine below which skin faces the ball
     away = np.linalg.norm(skin - centre, axis=1)
     shell = skin[(away < most_radii * radius) & (outward < facing)]

@@ -1,4 +1,4 @@
-"""The similarity from a head to the face space, by its 68 landmarks; or an error."""
+"""Find the similarity from a head to the face space by its 68 landmarks."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ ORIENTING = slice(17, COUNT)  # without the jaw line, on which annotators differ
 
 
 def placed(points: Floats64, known: Head) -> Similarity:
-    """The similarity to the face space [mm]; AssetError if the points are no face."""
+    """Find the similarity from landmarks (68, 3) to the face space [mm].
+
+    Raises AssetError if the landmarks are no face, are mirrored, or are in a wrong order.
+    """
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
-    least_size = 1e-9  # between the outermost landmarks: smaller squares lack digits
+    least_size = 1e-9  # of the box around the landmarks; squares of less would lose precision
     if extent < least_size:
         raise AssetError(
             f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
@@ -29,9 +32,9 @@ def placed(points: Floats64, known: Head) -> Similarity:
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
     disordered = groups_in_disorder(similarity.points(points), template)
-    farthest_from_a_face = 14.0  # [mm] mean distance of landmarks from those of the built-in head
+    farthest_from_a_face = 14.0  # [mm]; greatest mean distance from the built-in landmarks
     is_far = off[ORIENTING].mean() > farthest_from_a_face
-    most_disordered = 3  # groups; if more are in disorder, no landmark is in its place
+    most_disordered = 3  # groups; if more are in a wrong order, the landmarks are no face
     if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
@@ -50,17 +53,17 @@ def placed(points: Floats64, known: Head) -> Similarity:
 
 
 def is_face(points: Floats64) -> bool:
-    """Whether landmarks [unit of the mesh] form a face and are in order."""
+    """Whether landmarks (68, 3) [unit of the mesh] form a face and are in the right order."""
     with contextlib.suppress(AssetError):
         return bool(placed(points, load("head")))
     return False
 
 
 def _check_different(points: Floats64, template: Floats64) -> None:
-    """Raise AssetError if two landmarks [mm] coincide that are far apart on any face."""
+    """Raise AssetError if two landmarks coincide that are far apart on any face; (68, 3) [mm]."""
     ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
-    # Landmarks this far apart on the built-in head must not coincide, because a muscle between them
-    # needs a length.
+    # Landmarks with at least this distance on the built-in head must not coincide, because a muscle
+    # between them needs a length.
     least_built_in_distance = 30.0  # [mm]
     a, b = np.unravel_index(
         (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape

@@ -1,7 +1,7 @@
-"""Triangles that fill the mouth or the eyes of a mesh, as in masks; they are removed.
+"""Find triangles that fill the mouth or the eyes of a mesh, so that they can be removed.
 
-A filling lies inside the landmarks of an opening, and all its vertices are on the opening's edge:
-it is one polygon, cut into triangles. The skin loses these triangles and keeps their vertices.
+A filling is a polygon inside the landmarks of an opening. It is cut into triangles, and all its
+vertices lie on the opening's edge. The skin loses these triangles and keeps their vertices.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..loading import load
 from ..meshes import Mesh
 from .face_place import placed
 
-# Landmarks around each opening: one chain above and one below, from corner to corner.
+# Landmarks around each opening: the upper chain from corner to corner, then the lower chain back.
 OPENINGS = {
     "mouth": ((60, 61, 62, 63, 64), (64, 65, 66, 67, 60)),
     "right eye": ((36, 37, 38, 39), (39, 40, 41, 36)),
@@ -36,7 +36,7 @@ class Filling:
 
     @property
     def in_words(self) -> str:
-        """The line that reports the filling to the user."""
+        """A line for the user that reports the filling."""
         *most, last = self.openings
         names = f"{', '.join(most)} and {last} are" if most else f"{last} is"
         count = len(self.triangles)
@@ -44,10 +44,9 @@ class Filling:
 
 
 def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
-    """All triangles that fill the mouth or an eye of a mesh; None without any.
+    """Find all triangles that fill the mouth or an eye of a mesh; None if there are none.
 
-    numbers: vertices at the landmarks, shape (68,). landmarks: their places [unit of the mesh],
-    shape (68, 3).
+    numbers: vertex numbers of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     to_face = placed(landmarks, load("head"))
     vertices = to_face.points(mesh.vertices)
@@ -67,7 +66,7 @@ def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling 
 
 
 def _smooth(points: Floats64) -> Floats64:
-    """A curve through points (n, 3) without overshoot."""
+    """Points (33, 3) of a curve without overshoot through points (n, 3)."""
     place_count = 33
     lengths = arc_lengths(points)
     curve = scipy.interpolate.PchipInterpolator(lengths, points)
@@ -79,10 +78,10 @@ def _filling(
 ) -> Integers:
     """The triangles that fill an opening, if they form a polygon with all corners on its edge.
 
-    Lengths are in the face space [mm], whose z axis points to the viewer.
+    All points are in the face space [mm], whose z axis points to the viewer.
 
-    around: landmarks of the opening, (n, 3). upper, lower: curves through them, from corner to
-    corner and back, (m, 3) each.
+    around: landmarks of the opening, (n, 3). upper, lower: curves through the landmarks, from the
+    first corner to the second and back, (m, 3) each.
     """
     none = np.zeros(0, np.int64)
     edge = np.concatenate([upper[:-1], lower[:-1]])
@@ -95,7 +94,7 @@ def _filling(
     near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
     used = np.unique(faces[near])
     ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
-    for share in (1.0, 0.9, 0.8):  # of the curve's size: folds may hang into the opening
+    for share in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
         shrunk = centre + share * (edge - centre)
         inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
         # Add triangles outside the curve, between it and a side of the polygon.
@@ -118,7 +117,7 @@ def _is_polygon(faces: Integers32) -> bool:
 
 
 def _is_inside(points: Floats64, polygon: Floats64) -> Flags:
-    """Flags of points (n, 2) inside a polygon (m, 2)."""
+    """Whether each point (n, 2) lies inside a polygon (m, 2); flags (n,)."""
     to_x, to_y = (polygon[:, None] - points).transpose(2, 0, 1)
     angles = np.unwrap(np.arctan2(to_y, to_x), axis=0, period=2.0 * np.pi)
     closing = np.arctan2(to_y[0], to_x[0]) - np.arctan2(to_y[-1], to_x[-1])

@@ -1,13 +1,15 @@
 """Guess the 68 landmarks of a head from the few that a user has placed.
 
-    first points  ->  similarity to the built-in head  ->  most similar person (likely_face.py)
-                  ->  its face fitted to the mesh, stiff at first  ->  its landmarks on the mesh
+    first points  ->  similarity to the built-in head
+                  ->  most similar person (likely_face.py)
+                  ->  warp of this person's face to the mesh
+                  ->  landmarks of this person, moved by the warp, on the mesh
 
-Each point of the person's face moves to the nearest place of the mesh that faces the same way. A
-warp follows these points, and bends more in each step.
+In each step of the warp, points of the person's face move to the nearest points of the mesh with
+similar normals. A smoothing thin-plate spline follows these points. It bends more in each step.
 
-Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (the stiffness falls from step to
-step; here a smoothing thin-plate warp has it).
+Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP", for stiffness that falls from
+step to step.
 """
 
 from __future__ import annotations
@@ -29,18 +31,18 @@ from ..model import Head
 from .likely_face import FARTHEST_MATCH, LikelyFace
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
-# Outer corners of the eyes, tip of the nose, corners of the mouth: everybody finds them, and they
-# are far apart in every direction.
+# Outer corners of the eyes, tip of the nose, corners of the mouth. Everybody finds these landmarks,
+# and they are far apart in every direction.
 FIRST = (36, 45, 30, 48, 54)
 
-Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> its place (3,) [unit of the mesh]
+Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> point (3,) [unit of the mesh]
 
 
 def guess(mesh: Mesh, known: Known) -> Floats64:
-    """Guess all 68 landmarks on a mesh [its unit], shape (68, 3).
+    """Guess all 68 landmarks on a mesh; returns points [unit of the mesh], (68, 3).
 
-    known: placed landmarks, at least those in `FIRST`; they stay in place. Raises AssetError if
-    they form no face.
+    known: placed landmarks, at least those in `FIRST`, which are returned unchanged. If they form
+    no face, raises AssetError.
     """
     head = load("head")
     similarity = placing(known)
@@ -57,7 +59,7 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     known_points = own[head.landmarks[numbers]]
     is_free = ~np.isin(np.arange(len(chosen)), numbers)
     laid = own
-    stiffnesses = (1e3, 300.0, 100.0)  # [mm] smoothing of the warp in each step
+    stiffnesses = (1e3, 300.0, 100.0)  # [mm]; smoothing of the warp in each step
     for stiffness in stiffnesses:
         feet = _feet(laid, head, chosen, face.mesh, faces)
         is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < FARTHEST_MATCH)
@@ -70,13 +72,13 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
 
 
 def placing(known: Known) -> Similarity:
-    """The similarity to the face space [mm], by four or more known landmarks.
+    """Find the similarity to the face space [mm] by four or more known landmarks.
 
-    Raises AssetError if they form no face, or the mirror image of a face.
+    Raises AssetError if the landmarks form no face, or the mirror image of a face.
     """
     similarity, off = _laid(known)
     right = "right is the subject's own, on your left where the face looks at you"
-    most_mean_distance = 14.0  # [mm] from the first points to the built-in head's
+    most_mean_distance = 14.0  # [mm] between known landmarks and those of the built-in head
     if off.mean() > most_mean_distance:
         right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
         for pair, (a, b) in right_and_left.items():
@@ -93,7 +95,7 @@ def placing(known: Known) -> Similarity:
 
 
 def _laid(known: Known) -> tuple[Similarity, Floats64]:
-    """The similarity from known landmarks to the built-in ones, and the error of each [mm]."""
+    """The similarity from known landmarks to the built-in ones, and their errors [mm], (n,)."""
     head = load("head")
     numbers = sorted(known)
     own = head.vertices[head.landmarks[numbers]]
@@ -105,9 +107,10 @@ def _laid(known: Known) -> tuple[Similarity, Floats64]:
 
 
 def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
-    """The skin's triangles around some points in face space, turned to face outward.
+    """The triangles (n, 3) of the skin around some points, turned to face outward.
 
     The skin is the piece of the mesh under most points; eyeballs, teeth and hair are left out.
+    vertices, given: in the face space [mm], (V, 3) and (m, 3).
     """
     middles = vertices[faces].mean(axis=1)
     under = scipy.spatial.cKDTree(middles).query(given)[1]
@@ -115,7 +118,7 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
     is_skin = piece == np.bincount(piece[under]).argmax()
     if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
         faces = faces[:, ::-1]
-    face_radii = np.array([60.0, 90.0, 120.0])  # [mm] reach of a face around the first points
+    face_radii = np.array([60.0, 90.0, 120.0])  # [mm] around the points in x, y and z
     low = given.min(axis=0) - face_radii
     high = given.max(axis=0) + face_radii
     is_near = ((middles > low) & (middles < high)).all(axis=1)
@@ -123,19 +126,22 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
 
 
 def _around_landmarks(head: Head) -> Integers32:
-    """Some vertices near the landmarks of a head, except the landmarks themselves."""
-    reach = 30.0  # [mm] around landmarks: the part of the built-in face that is fitted to the mesh
+    """Numbers of at most 300 or so vertices near the landmarks of a head, without the landmarks."""
+    reach = 30.0  # [mm] around landmarks, within which the built-in face is fitted to the mesh
     near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
     near[head.landmarks] = False
     every = np.flatnonzero(near).astype(np.int32)
-    most_points = 300  # of this part (chosen: more take longer, with the same result)
+    most_points = 300  # more would take longer with the same result
     return every[:: max(len(every) // most_points, 1)]
 
 
 def _feet(
     laid: Floats64, head: Head, chosen: Integers32, vertices: Floats64, faces: Integers32
 ) -> Floats64:
-    """Nearest places on a mesh for some vertices of the warped head, facing the same way."""
+    """The nearest points (n, 3), with similar normals, on a mesh for n vertices of the warped head.
+
+    laid: vertices of the warped head. chosen: numbers of the n vertices.
+    """
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
 
@@ -148,6 +154,6 @@ def centred(vertices: Floats64, radius: float) -> Similarity:
 
 
 def axes_turned() -> list[Floats64]:
-    """The 24 rotations that map the coordinate axes to each other, the identity first."""
+    """The 24 rotations (3, 3) that map coordinate axes to coordinate axes, the identity first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))

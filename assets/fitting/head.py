@@ -2,14 +2,15 @@
 
     landmarks  ->  similarity to millimetres and the face space
                ->  warp of the built-in head  ->  depth of bone, texture
-                                              ->  share of the mandible
+                                              ->  weights of the mandible
                                               ->  eyes, teeth, tongue, mouth
 
-Muscles need no fitting, because the rig names landmarks (sim/rig.py). Each skin vertex takes the
-built-in head's share of the mandible's motion, so a chin follows its bone equally stiffly.
+Muscles need no fitting, because the rig names landmarks (sim/rig.py). Each skin vertex takes its
+weight of the mandible's motion from the built-in head, so that chins of all heads follow the jaw
+equally stiffly.
 
-Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop". Differs from it: no mesh is fitted to
-scanned points; the user's mesh itself is animated.
+Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop". That paper fits a mesh to scanned points;
+here the user's mesh itself is animated.
 """
 
 from __future__ import annotations
@@ -69,18 +70,18 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 
 @dataclass(frozen=True)
 class FittedHead(simplifying.SimulatedHead):
-    """A user's head, with all data for `sim.create` and a renderer.
+    """A user's head with all data for `sim.create` and a renderer.
 
-    It has the attributes of `Head`, in the face space [mm]. Pieces without a landmark (the mesh's
-    own eyeballs and teeth) are left out.
+    It has the attributes of `Head`, in the face space [mm]. Pieces of the mesh without a landmark,
+    such as eyeballs and teeth, are left out.
 
-    to_millimetres: from the file's coordinates to the face space.
-    file_vertices: the file's number of each vertex, or of the nearest one, shape (V,), int32.
-    notes: changes of the mesh that its owner should know, one line for each.
-    called: name or number of the head, "" without one.
-    simplified: the simulated mesh, if the head has too many triangles; else None.
-    files: paths of the mesh and the landmark file; empty if the head was not read from files.
-    lip_cut: the cut between the lips, if the file's lips are joined; else None.
+    to_millimetres: similarity from the file's coordinates to the face space.
+    file_vertices: for each vertex the number of the nearest vertex in the file, (V,), int32.
+    notes: changes of the mesh that the user should know, one line for each.
+    called: name or number of the head; "" if it has none.
+    simplified: simulated mesh of a head with too many triangles; None for other heads.
+    files: paths of the mesh and of the landmark file; empty if the head was not read from files.
+    lip_cut: the cut between lips that are joined in the file; None for other heads.
     """
 
     face_uv: Integers32
@@ -98,16 +99,17 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> Floats32 | None:
-        """Where the skin fades at the neck, (V, 2), see `neck_fade`; None without a neck's edge."""
+        """How the skin fades at the neck, (V, 2), see `neck_fade`; None if no edge is there."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHead:
-    """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
+    """Read a mesh and its landmark file (see landmark_file.py), and fit the built-in head to it.
 
-    landmarks: None for a mesh of a known topology, see topologies.py. Raises AssetError if a file
-    is missing, broken or unusable; its one line names the file. Raises the subclass UnfinishedError
-    if landmarks are missing, or if those of a known topology do not fit.
+    landmarks: path of the landmark file; None for a mesh of a known topology (topologies.py).
+
+    Raises AssetError if a file is missing, broken or unusable. Raises its subclass UnfinishedError
+    if landmarks are missing, or if the landmarks of a known topology do not fit.
     """
     path = Path(mesh)
     found = read_mesh(path)
@@ -130,9 +132,10 @@ Marks = tuple[Integers32, Floats64 | None]  # landmarks, see `read_landmarks`
 
 
 def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]) -> FittedHead:
-    """Fit a mesh, after opening filled openings and parting joined lips.
+    """Fit a mesh; if skin covers mouth or eyes, remove fillings and part joined lips first.
 
-    marks_of: returns the landmarks of a mesh with the same vertices and other triangles.
+    marks_of: function that returns the landmarks of a mesh with the same vertices, but other
+        triangles.
     """
     numbers, points = marks
     places = mesh.vertices[numbers] if points is None else points
@@ -173,7 +176,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
 
     def marks_of(parted: Mesh) -> Marks:
-        """The known landmarks; those of parted lips are on the upper and the lower lip."""
+        """The known landmarks, those of the inner lips moved to the own one of two parted lips."""
         numbers = known.landmarks
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
@@ -193,8 +196,8 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
 def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
-    landmarks: vertex numbers, shape (68,). points: exact places [unit of the mesh], shape (68, 3);
-    None for the places of the vertices. Raises AssetError for an unusable mesh.
+    landmarks: vertex numbers, (68,). points: exact positions [unit of the mesh], (68, 3); None for
+    the positions of the vertices. Raises AssetError for an unusable mesh.
     """
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
@@ -255,7 +258,7 @@ class _Jaw(NamedTuple):
 
 
 def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
-    """The jaw of a skin [mm] whose 68 landmarks lie at `target`."""
+    """Find the jaw of a skin [mm] with the landmarks `target`, (68, 3) [mm]."""
     axis = jaw_axis_of(skin.vertices, skin.faces, target)
     return _Jaw(axis, known.rig if axis is None else opening_as_people(known.rig, axis, target))
 
@@ -273,8 +276,8 @@ class _Carried(NamedTuple):
 
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
-    uv: Floats32  # (V, 2) in the built-in picture
-    across: Floats32  # (V, 3) direction across wrinkles
+    uv: Floats32  # (V, 2) texture coordinates in the built-in texture
+    across: Floats32  # (V, 3) directions across wrinkles
     bone_depth: Floats64  # (V,) [mm]
     mandible_weight: Floats64  # (V,)
 
@@ -282,7 +285,7 @@ class _Carried(NamedTuple):
 def _carried_over(
     known: Head, skin: SkinPiece, target: Floats64, pieces: tuple[Floats64, ...], jaw: _Jaw
 ) -> _Carried:
-    """Warp the built-in head to a skin [mm] with landmarks at `target`; return its data there."""
+    """Warp the built-in head to a skin [mm] with landmarks `target`, and carry its data over."""
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
@@ -292,10 +295,10 @@ def _carried_over(
     eyes = place_eyes(known, fitted)
     axis = warp.points(known.jaw_axis) if jaw.axis is None else jaw.axis
     parts = place_parts(known, fitted, warp, eyes, opened_jaws(axis, jaw.rig))
-    neck_part = "neck"  # bone of the built-in shirt, which fits only the built-in shoulders
+    neck_part = "neck"  # bone of the built-in shirt, which fits no other shoulders
     return _Carried(
         eyes=eyes,
-        # Landmarks do not give the edge of a lid exactly enough for lashes and tears.
+        # Landmarks do not give the edges of lids precisely enough for lashes and tears.
         parts=tuple(part for part in parts if part.bone != neck_part and part.roots is None),
         uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
         across=nearest.interpolate(known.wrinkles.across).astype(np.float32),
@@ -307,7 +310,7 @@ def _carried_over(
 def _simulated(
     known: Head, coarse: SkinPiece, carried: _Carried, jaw: _Jaw
 ) -> simplifying.SimulatedHead:
-    """The simulated head on a simplified mesh."""
+    """Make the simulated head of a simplified mesh."""
     return simplifying.SimulatedHead(
         vertices=coarse.vertices,
         faces=coarse.faces,
@@ -324,7 +327,7 @@ def _simulated(
 
 
 def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried:
-    """The same data for the dense skin `fine`, whose simplified mesh is `coarse`."""
+    """Interpolate data on the simplified mesh `coarse` at the vertices of the dense skin `fine`."""
     normals = vertex_normals(fine.vertices, fine.faces)
     nearest = nearest_on(fine.vertices, normals, coarse.vertices, coarse.faces)
     return carried._replace(
@@ -336,7 +339,10 @@ def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried
 
 
 def _sound(skin: SkinPiece) -> SkinPiece:
-    """The skin [mm], facing outward and without a bag behind its lips; AssetError if unusable."""
+    """Check a skin [mm], turn it outward, and remove a bag behind its lips.
+
+    Raises AssetError for an unusable skin.
+    """
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
@@ -350,10 +356,10 @@ def _painted(
     skin: SkinPiece,
     built_in: Layout,
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
-    """Layout and picture of the skin, and maps in this layout (see `maps_in`).
+    """Return layout and texture of the skin, and maps in this layout (see `maps_in`).
 
-    own: the file's picture of the skin and its layout, None without a picture. built_in: layout of
-    the skin in the built-in picture.
+    own: texture of the file, and its layout; None if the file has no texture. built_in: layout of
+    the skin in the built-in texture.
     """
     known = load("head")
     if own is not None:
@@ -372,7 +378,7 @@ def _painted(
 def _check_size(skin: SkinPiece) -> None:
     """Raise AssetError if a vertex [mm] lies far away from the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
-    most_distance = 10_000.0  # [mm] from the middle of the face: more is a mistake
+    most_distance = 10_000.0  # [mm] from the centre of the face; more is a mistake
     if off.max() > most_distance:
         where = int(off.argmax())
         raise AssetError(
@@ -383,7 +389,7 @@ def _check_size(skin: SkinPiece) -> None:
 
 
 def _facing_outward(skin: SkinPiece) -> SkinPiece:
-    """The same skin, with triangles counter-clockwise as seen from outside."""
+    """Turn the triangles of a skin, if necessary, to run counter-clockwise seen from outside."""
     normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin

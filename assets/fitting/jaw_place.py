@@ -1,7 +1,8 @@
-"""The jaw of a mesh: its axis in front of the ears, and the angle by which it opens.
+"""Find the jaw of a mesh: its axis in front of the ears, and the angle by which it opens.
 
-An ear stands off the side of a head, so the outline of a level section jumps outward at the ear's
-front. The condyles lie a finger's breadth in front of the ear canal, well below the skin.
+An ear stands off the side of a head. So the outline of a horizontal section through the head jumps
+outward at the front of the ear. The condyles, around which the jaw turns, lie a finger's breadth in
+front of the ear canal, well below the skin.
 """
 
 from __future__ import annotations
@@ -13,14 +14,13 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64, Integers32
 
-USUAL_WIDTH = 136.0  # [mm] between the landmarks at the ears, for which lengths are given
+USUAL_WIDTH = 136.0  # [mm] between landmarks 0 and 16; other lengths hold for this width
 
 
 def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> Floats64 | None:
-    """Centres of the right and the left condyle [mm], shape (2, 3); None without a visible ear.
+    """Centres of the right and the left condyle [mm], (2, 3); None if no ear is found.
 
-    vertices: in the face space [mm], (V, 3). faces: (F, 3).
-    landmarks: places of the landmarks [mm], (68, 3).
+    vertices: in the face space [mm], (V, 3). faces: (F, 3). landmarks: points [mm], (68, 3).
     """
     width = landmarks[16, 0] - landmarks[0, 0]
     scale = width / USUAL_WIDTH
@@ -33,9 +33,9 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     if not ears:
         return None
     middle, front = np.mean(ears, axis=0)
-    above_middle = 5.0  # [mm] from an ear's middle up to the canal's upper edge
-    before = 14.0  # [mm] from the root of the helix over the tragus to the condyle
-    # Ears vary more in size and height than the joint does in place, so its place is bounded.
+    above_middle = 5.0  # [mm] from an ear's centre up to the canal's upper edge
+    before = 14.0  # [mm] from the root of the helix forward to the condyle
+    # Size and height of ears vary more than the position of the joint, so this position is bounded.
     up = np.clip(middle + above_middle, -30.0, -8.0)
     forward = np.clip(front + before, -75.0, -40.0)
     out = 0.36 * USUAL_WIDTH
@@ -45,17 +45,18 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
 def opening_as_people(
     rig: Mapping[str, Any], axis: Floats64, landmarks: Floats64
 ) -> dict[str, Any]:
-    """A rig whose jaw opens as far as people's jaws: its turn and glide are scaled.
+    """Scale angle and glide of a rig's jaw so that the mouth opens as far as people's mouths.
 
-    axis: of the jaw, (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip represents the teeth. The
-    opening is three quarters of the widest one, which is 50 mm between the edges of men's incisors.
-    It grows with the distance from the axis to the teeth. It is measured along the motion of the
-    teeth: far below the axis they move back as much as down.
+    The opening is three quarters of the widest opening, which is 50 mm between the incisors of men.
+    It is proportional to the distance from the axis to the teeth. It is measured along the path of
+    the teeth, because teeth far below the axis move back as much as down.
+
+    axis: condyles, (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip stands for the teeth.
     """
     jaw = dict(rig["jaw"])
     down, forward = (landmarks[66] - axis.mean(axis=0))[1:] * (-1.0, 1.0)
     reach = float(np.hypot(down, forward))
-    opening = 0.75 * 50.0 / 100.0  # share of the distance from axis to teeth, 100 mm in men
+    opening = 0.75 * 50.0 / 100.0  # relative to the distance from axis to teeth, 100 mm in men
     gains = np.linspace(0.8, 1.3, 51)
     angles = gains * np.radians(jaw["opening_deg"])
     sunk = forward * np.sin(angles) - down * (1.0 - np.cos(angles))
@@ -69,16 +70,16 @@ def opening_as_people(
 
 
 def _spread(places: Floats64, faces: Integers32) -> Floats64:
-    """Points all over triangles, (n, 3), dense enough for every section to meet some."""
+    """Points on triangles, (n, 3), so dense that every section contains some."""
     shares = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
     corners = places[faces]
     return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in shares])
 
 
 def _ear(points: Floats64) -> tuple[float, float] | None:
-    """Height of the left ear's middle and depth of its front, from the eyes up and forward [mm].
+    """Height of the left ear's centre, and z of its front, relative to the eyes [mm].
 
-    None if fewer than five sections show an ear.
+    points: relative to the eyes [mm], (n, 3). None if fewer than five sections show an ear.
     """
     heights = np.arange(-64.0, 16.0, 4.0)
     depths = np.arange(-24.0, -130.0, -2.0)
@@ -89,13 +90,13 @@ def _ear(points: Floats64) -> tuple[float, float] | None:
     has_ear = ~np.isnan(fronts)
     if has_ear.sum() < 5:
         return None
-    # Long ears reach up or down, but most sections meet the front at the root of the ear.
+    # Ears may be long, but most sections meet the front at the root of the ear.
     front = float(np.median(fronts[has_ear]))
     return float(heights[has_ear].mean()), front
 
 
 def _outline(section: Floats64, depths: Floats64) -> Floats64:
-    """How far a section reaches to the side at each depth [mm]; 0 behind its end."""
+    """Greatest x of a section's points at each depth [mm], (n,); 0 behind the end of the mesh."""
     reach = np.full(len(depths), -np.inf)
     row = np.round((depths[0] - section[:, 2]) / 2.0).astype(np.int64)
     inside = (row >= 0) & (row < len(depths))
@@ -108,7 +109,7 @@ def _outline(section: Floats64, depths: Floats64) -> Floats64:
 
 
 def _front(reach: Floats64, depths: Floats64) -> float:
-    """Depth [mm] of an ear's front, where the outline jumps outward; NaN without an ear."""
+    """Depth of an ear's front [mm], where the outline jumps outward; NaN if there is no ear."""
     for row in range(4, len(depths) - 12):
         leap = reach[row] - reach[row - 4]
         stands_out = reach[row : row + 12].max() - reach[row - 4]

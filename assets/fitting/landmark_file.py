@@ -3,16 +3,17 @@
 The file is JSON and holds vertex numbers or coordinates.
 
     {"landmarks": [1225, 1888, ...]}              vertex numbers, counted from 0
-    {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in its own unit
+    {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in the mesh's unit
 
 The key may have any name, other keys are ignored, and a list without a key suffices. In an
-unfinished file, missing landmarks are null, and "guessed" lists the numbers of guessed landmarks
-that the user has not moved. A group in a wrong order would tear the face, so the order is tested.
+unfinished file, missing landmarks are null. The key "guessed" lists the numbers of guessed
+landmarks that the user has not moved. The order of each group of landmarks is tested, because a
+wrong order would tear the face.
 
 The test compares the given order of a group with the order q that fits the built-in group best. For
 points p and template points t, the sum of p_i (t_i - t_q(i)) is about 0 if the given order is
-right. A shift of the whole group does not change this sum. Divided by its value for p = t, it is
-near -1 if the group has the order q.
+right. A shift of the whole group does not change this sum. If the group has the order q, the sum is
+about -1 times its value for p = t.
 
 Source: Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (the order of the points).
 """
@@ -49,10 +50,11 @@ OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
     """Read landmarks: vertex numbers (68,), int32, and points (68, 3) [unit of the mesh] or None.
 
-    If the file holds points, the numbers are those of the nearest vertices.
+    If the file holds points, the numbers are those of the nearest vertices. If it holds numbers,
+    the points are None.
 
-    Raises AssetError for a file that is missing, too long or not JSON, for another count of
-    landmarks, for a number out of range, and for a point off the mesh.
+    Raises AssetError for a file that is missing, too long or not JSON, for another number of
+    landmarks, for a vertex number out of range, and for a point off the mesh.
     """
     try:
         found = _all_in(_document(path))
@@ -63,7 +65,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
             )
         if _are_numbers(found):
             numbers = _numbers(found, len(mesh.vertices))
-            # Of several vertices in one place, triangles use only one.
+            # Triangles use only one of several coinciding vertices.
             return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
@@ -72,9 +74,11 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
 
 
 def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[int]]:
-    """Read the points (3,) [unit of the mesh] of marked landmarks, and the numbers of guessed ones.
+    """Read a file that may lack landmarks.
 
-    Raises AssetError as `read_landmarks` does, but not for missing landmarks.
+    Returns the points of the marked landmarks: number -> point (3,) [unit of the mesh]; and the
+    numbers of the guessed landmarks. Raises AssetError like `read_landmarks`, except for missing
+    landmarks.
     """
     try:
         document = _document(path)
@@ -95,17 +99,17 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
 
 
 def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
-    """Return the text of a landmark file; points: number -> place, and null for missing numbers."""
+    """Return the text of a landmark file; places: number -> point; missing numbers become null."""
     rows = ",\n    ".join(json.dumps(places.get(number)) for number in range(COUNT))
     return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
 
 
 class UnfinishedError(AssetError):
-    """Landmarks are missing; a user can mark them in the window."""
+    """Landmarks are missing; the user can mark them in the window."""
 
 
 class MisfitError(UnfinishedError):
-    """The landmarks of a known topology do not fit the head; those that a user marks may fit."""
+    """The landmarks of a known topology do not fit the head; the user can mark others."""
 
 
 def _document(path: Path) -> Any:
@@ -117,7 +121,7 @@ def _document(path: Path) -> Any:
 
 
 def _all_in(document: Any) -> list[Any]:
-    """The 68 entries: the document itself, its list with the key KEY, or its first list of 68."""
+    """Find the 68 entries: the document itself, its list KEY, or its first list of 68 entries."""
     entries = [document]
     if isinstance(document, dict):
         entries = [document[KEY]] if KEY in document else list(document.values())
@@ -155,15 +159,15 @@ def _points(found: list[Any]) -> Floats64:
 
 
 def _read_each(kind: Any, found: list[Any]) -> list[Any]:
-    """Entries, checked to be of one kind; ValueError names a wrong landmark, counted from 0."""
+    """Check that all entries have one type; a ValueError names the wrong landmark, from 0."""
     named_entries = {f"landmark {place}": entry for place, entry in enumerate(found)}
     return list(read(dict[str, kind], named_entries, "").values())
 
 
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
-    """The vertices nearest to points; AssetError if a point lies off the mesh."""
+    """The vertices nearest to points, (68,); a point off the mesh raises AssetError."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    most_share = 0.05  # of the distance between the outer eye corners; more is a mistake
+    most_share = 0.05  # greatest distance from the mesh, relative to that of the outer eye corners
     outer_eye_corners = [36, 45]
     allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:
@@ -172,7 +176,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): give unit and axes of the mesh"
         )
-    # A point at an eye may lie on a lash or on the eyeball, but most points lie on the skin.
+    # Points near an eye may lie on a lash or on the eyeball, but most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]
     skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
     if _triangles_at(points, mesh, skin)[1].max() > allowed:
@@ -181,21 +185,21 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     joined, _ = with_seams_joined(mesh.vertices, skin, numbers)
     if joined is skin:
         return numbers
-    return nearest_vertices(points, mesh.vertices, joined)  # skin paths cross the joined seams
+    return nearest_vertices(points, mesh.vertices, joined)  # paths can now cross the seams
 
 
 def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any, Floats64]:
-    """The triangles nearest to points, and their distances, shapes (n,)."""
+    """The triangles nearest to points (n, 3), and the distances, both (n,)."""
     found = nearest_on(points, np.zeros_like(points), mesh.vertices, faces)
     return found.triangles, np.linalg.norm(found.interpolate(mesh.vertices) - points, axis=1)
 
 
 def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) -> Integers32:
-    """The vertices nearest to the points of landmarks, shape (68,).
+    """The vertices nearest to the points of landmarks (68, 3), (68,).
 
-    Where lips touch, the nearest vertex may be on the other lip. So a landmark of an inner lip
-    takes the nearest vertex on its own lip. The shorter path along the skin to the outer lips shows
-    which lip a vertex is on.
+    Where lips touch, the nearest vertex may belong to the other lip. So a landmark of an inner lip
+    takes the nearest vertex of the same lip. A vertex belongs to the lip whose outer landmarks have
+    the shorter path along the skin.
     """
     used = np.unique(faces)
     numbers: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
@@ -224,7 +228,7 @@ class Group:
 
     @property
     def complaint(self) -> str:
-        """The error message for a group in a wrong order."""
+        """The error message if this group is in a wrong order."""
         return (
             f"landmarks {self.first} to {self.first + self.count - 1}, the {self.name}, are not in "
             f"their order; right is: {self.right_order} (the subject's own right and left)"
@@ -247,9 +251,9 @@ GROUPS = (
 
 
 def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
-    """Groups that would fit better in another order; points and template: (68, 3) [mm].
+    """The groups of landmarks in a wrong order; points, template: (68, 3) [mm].
 
-    In a closed mouth only paths along the skin separate the inner lips, see `check_lips`.
+    In a closed mouth this test cannot separate the inner lips; `check_lips` does.
     """
     return [group for group in GROUPS if _is_disordered(group, points, template)]
 
@@ -260,9 +264,9 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
-    least_difference = 3.0  # [mm] between the places in both orders; less makes no difference
+    least_difference = 3.0  # [mm] between points in both orders; less is no clear difference
     is_clear = size > 0.5 * group.count * least_difference**2
-    disordered_correlation = -0.3  # well below 0, so that points in the right order pass
+    disordered_correlation = -0.3  # well below 0, so that the right order passes
     return is_clear and float((given * moved).sum()) < disordered_correlation * size
 
 

@@ -1,13 +1,15 @@
-"""Find the person most similar to a mesh with few known points.
+"""Find the person that is most similar to a mesh, by few known landmarks and the mesh's surface.
 
-A person is the built-in head plus a weighted sum of modes. The weights and the place of the mesh
-are solved for together. Three errors are
-minimised: distances of the known points, with a large weight; distances of the skin around the
-landmarks from planes at the mesh; and the weights, which are 0 for the built-in head.
+A person is the built-in head plus a weighted sum of modes. The weights are solved for together with
+a similarity of the mesh. Least squares minimise three errors:
+
+- distances of the known landmarks, with a large weight
+- distances of the skin around all landmarks from tangent planes of the mesh
+- the weights, which are 0 for the built-in head
 
 Source: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a morphable
-model", section 3 (modes fitted by nearest points, with a prior). Differs from it: the planes have
-the normals of the person, and there are no expressions.
+model", section 3 (modes fitted by nearest points, with a prior). Here the planes have the normals
+of the person instead, and there are no expressions.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from ..data_files import read_arrays
 from ..model import Head
 from .warp import Similarity, nearest_on
 
-FARTHEST_MATCH = 18.0  # [mm] between a point of the person and its place on the mesh
+FARTHEST_MATCH = 18.0  # [mm] between a vertex of the person and the nearest point of the mesh
 
 
 @dataclass
@@ -33,8 +35,11 @@ class LikelyFace:
 
     head: the built-in head, which has the topology of all persons.
     mesh: vertices of the mesh in the person's space [mm], (V, 3).
-    faces: triangles of the mesh's skin. numbers: known landmarks. given: their places [mm].
-    skin: vertices of the person that are fitted to the mesh.
+    faces: triangles of the mesh's skin, (F, 3).
+    numbers: numbers of the n known landmarks.
+    given: points of the known landmarks [mm], (n, 3).
+    skin: numbers of the person's vertices that are fitted to the mesh, (m,).
+    moved: all motion of the mesh so far.
     """
 
     head: Head
@@ -48,32 +53,32 @@ class LikelyFace:
         modes = read_arrays(self.head.beside("_modes.npz"))["modes"]
         self._modes = modes.astype(np.float64)
         self._weights = np.zeros(len(self._modes))
-        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))  # all motion of the mesh so far
+        self.moved = Similarity(1.0, np.eye(3), np.zeros(3))
 
     @property
     def vertices(self) -> Floats64:
-        """The vertices of the person [mm]."""
+        """The vertices of the person [mm], (V, 3)."""
         return self.head.vertices + np.tensordot(self._weights, self._modes, 1)
 
     def fit(self) -> None:
-        """Fit the person, first by the known points alone."""
+        """Fit the person, in the first steps by the known landmarks alone."""
         few_steps = 3
-        steps = 8  # afterwards a median guess moves by less than 0.1 mm
+        steps = 8  # a further step would move the median guess by less than 0.1 mm
         for step in range(steps):
             self._step(has_surface=step >= few_steps)
 
     def _step(self, *, has_surface: bool) -> None:
-        """Solve once for the weights and for a small motion of the mesh (shift, turn, growth)."""
+        """Solve once for the weights and a small motion of the mesh: shift, rotation and scale."""
         vertices = self.vertices
         count = len(self._modes)
         known = self.head.landmarks[self.numbers]
-        pointing = 0.7  # [mm] usual error of known points
+        pointing = 0.7  # [mm]; usual error of known landmarks
         ways = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
         rows = [np.hstack([ways, -_motions(self.given)]) / pointing]
         right = [(self.given - vertices[known]).ravel() / pointing]
         rows.append(np.eye(count, count + 7))
         right.append(-self._weights)
-        # Usual sizes of a motion in one step: shift [mm], turn [radians], growth [share].
+        # Usual sizes of a motion in one step: shift [mm], rotation [rad], change of scale.
         reach = np.concatenate([np.full(3, 20.0), np.full(4, 0.1)])
         rows.append(np.eye(7, count + 7, count) / reach[:, None])
         right.append(np.zeros(7))
@@ -88,7 +93,10 @@ class LikelyFace:
         self._move(Similarity(1.0 + float(growth), rotation, shift))
 
     def _planes(self, vertices: Floats64) -> tuple[Floats64, Floats64]:
-        """Equations that move the skin to planes at the nearest places of the mesh."""
+        """Equations for the weights and the motion: rows (n, modes + 7), and right sides (n,).
+
+        They move the skin of the person onto planes at the nearest points of the mesh.
+        """
         normals = vertex_normals(vertices, self.head.faces)[self.skin]
         points = vertices[self.skin]
         feet = nearest_on(points, normals, self.mesh, self.faces).interpolate(self.mesh)
@@ -104,15 +112,15 @@ class LikelyFace:
             ]
         )
         off = np.einsum("ni,ni->n", feet - points[is_near], normals)
-        doubtful = 6.0  # [mm] distance from which a place counts less
+        doubtful = 6.0  # [mm]; points at greater distances count less
         weight = 1.0 / np.sqrt(1.0 + (distance[is_near] / doubtful) ** 2)
-        rough = 2.5  # [mm] usual distance between a face and the nearest person
-        independent = 60.0  # effective count of places, as neighbours are alike
+        rough = 2.5  # [mm]; usual distance between a face and the most similar person
+        independent = 60.0  # effective number of points, because neighbours are correlated
         weight /= rough * np.sqrt(max(len(feet) / independent, 1.0))
         return weight[:, None] * rows, weight * off
 
     def _move(self, step: Similarity) -> None:
-        """Move the mesh."""
+        """Move the mesh and the known landmarks."""
         self.mesh = step.points(self.mesh)
         self.given = step.points(self.given)
         before = self.moved
@@ -122,7 +130,7 @@ class LikelyFace:
 
 
 def _motions(points: Floats64) -> Floats64:
-    """How shift, turn and growth move points (n, 3), shape (3 n, 7)."""
+    """The Jacobian of points (n, 3) by shift (3), rotation (3) and scale (1), (3 n, 7)."""
     x, y, z = points.T
     none = np.zeros_like(x)
     turns = np.stack([none, z, -y, -z, none, x, y, -x, none], axis=1).reshape(-1, 3, 3)

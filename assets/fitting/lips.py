@@ -1,8 +1,9 @@
 """Separate lips that are joined in a mesh, so that muscles can part them.
 
-There are two cases. A file may double vertices along its lips: the reader merges them, and here
-they become two again. Or skin covers the mouth: it is cut along the landmarks of the inner lips, 60
-to 67. Vertices on this line are doubled, except at its two ends.
+There are two cases. In the first, the file has doubled vertices along the lips, which the reader
+merged; `lips_parted` separates them again. In the second, skin covers the mouth; `lip_cut` cuts it
+along the landmarks of the inner lips, 60 to 67. Vertices on this line are doubled, except at its
+two ends.
 """
 
 from __future__ import annotations
@@ -22,26 +23,25 @@ from ..meshes import Mesh
 
 UPPER_LIP = (60, 61, 62, 63, 64)
 LOWER_LIP = (60, 67, 66, 65, 64)
-OUTER_MIDDLES = (51, 57)  # of the outer borders of the upper and the lower lip
+OUTER_MIDDLES = (51, 57)  # landmarks on the outer borders of the upper and the lower lip
 
 
 def lips_line(landmarks: Floats64) -> Floats64:
-    """The line between the lips, from the right corner to the left one, shape (5, 3)."""
+    """The line between the lips, from the right to the left corner, (5, 3); landmarks: (68, 3)."""
     return (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
 
 
 def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
-    """The mesh with the file's doubled vertices kept separate where the lips touch.
+    """Separate merged vertices of a mesh where its lips touch; None if no vertex was merged there.
 
     A file doubles vertices along seams of its texture, and the reader merges them. Between lips
-    they must stay separate. landmarks: places [unit of the mesh], shape (68, 3). Returns None if no
-    vertex is doubled there.
+    they must stay separate. landmarks: points [unit of the mesh], (68, 3).
     """
     if mesh.corners is None or mesh.same is None:
         return None
     line = lips_line(landmarks)
-    # Share of the distance between the outer eye corners. Touching lips lie nearer to the line
-    # between them.
+    # Greatest distance of touching lips from the line between them, relative to the distance of the
+    # outer eye corners.
     most_gap = 0.01
     near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
     off = _distances(mesh.vertices, line)
@@ -55,13 +55,14 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
 
 @dataclass(frozen=True)
 class LipCut:
-    """A cut between the lips of a mesh.
+    """A cut between the lips of a mesh, which doubles vertices.
 
-    sources: the file's vertex that each new vertex doubles, shape (n,).
-    New vertices follow after the last vertex of the file.
-    below: triangles at the cut on the lower lip, which get the new vertices, shape (k, 3).
-    Each row holds the file's vertex numbers, the least first.
-    landmarks: vertices of the cut mesh, shape (68,). points: their places, (68, 3).
+    sources: the file's vertices that are doubled, (n,). The new vertices come after the last vertex
+        of the file.
+    below: triangles of the lower lip at the cut, which get the new vertices, (k, 3). Each row holds
+        vertex numbers of the file in rising order.
+    landmarks: vertex numbers of the landmarks in the cut mesh, (68,).
+    points: points of the landmarks [unit of the mesh], (68, 3).
     """
 
     sources: Integers
@@ -71,7 +72,7 @@ class LipCut:
 
     @property
     def in_words(self) -> str:
-        """The line that reports the cut to the user."""
+        """A line for the user that reports the cut."""
         return f"its lips were sealed: they are cut apart, {len(self.sources)} vertices are doubled"
 
     def applied(self, mesh: Mesh) -> Mesh:
@@ -84,7 +85,7 @@ class LipCut:
         corners = corners.copy()
         corners[rows] = place[corners[rows]]
         same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
-        # New vertices in the same place are merged.
+        # New vertices that coincide are merged.
         _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
         same = np.concatenate([same, count + first[number]])
         faces = mesh.faces.copy()
@@ -101,7 +102,7 @@ class LipCut:
         )
 
     def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
-        """Flags of triangles (F, 3) of the file that get new vertices."""
+        """Whether each triangle of the file (F, 3) gets new vertices; flags (F,)."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
         found = np.zeros(len(triangles), np.bool_)
@@ -110,19 +111,19 @@ class LipCut:
 
 
 def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
-    """The cut between joined lips; None if the lips are apart, or no path of edges lies between.
+    """Find the cut between joined lips.
 
-    numbers: vertices at the landmarks, shape (68,). landmarks: places [unit of the mesh], shape
-    (68, 3).
+    Returns None if the lips are apart, or if no path of edges runs between them. numbers: vertex
+    numbers of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     line = lips_line(landmarks)
     gaps = landmarks[list(UPPER_LIP)] - landmarks[list(LOWER_LIP)]
-    most_gap = 0.12  # of the distance between the corners
+    most_gap = 0.12  # greatest gap between lips, relative to the distance of the mouth's corners
     width = np.linalg.norm(line[-1] - line[0])
     if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
         return None
     path = _path_along(mesh, line)
-    if path is None or len(path) < 5:  # a mouth with fewer edges has no form
+    if path is None or len(path) < 5:  # with fewer edges, a mouth has no shape
         return None
     inner = path[1:-1]
     parts = _sides_of_path(mesh.faces, path)
@@ -153,14 +154,14 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """Vertices of a path of edges along a line (n, 3), from end to end; None without a path."""
+    """Vertex numbers of a path of edges along a line (n, 3); None if no path joins its ends."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
     edges = edges_of(mesh.faces)
     points = mesh.vertices[edges]
     lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     off = _distances(points.mean(axis=1), line)
-    # An edge at this distance, a share of the line's length, counts as twice as long.
+    # An edge at this distance from the line counts as twice as long.
     near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
     graph = edge_graph(edges, weights, len(mesh.vertices))
@@ -170,7 +171,7 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
-    """The triangles at the inner vertices of a path, grouped by side of the path."""
+    """The triangles at the inner vertices of a path, in one group for each side of the path."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
     sides = np.sort(sides_of(faces[strip]), axis=1)
     owner = np.tile(np.arange(len(strip)), 3)
@@ -188,7 +189,7 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
 
 
 def _distances(points: Floats64, line: Floats64) -> Floats64:
-    """Distances of points (n, 3) from a line (m, 3), shape (n,)."""
+    """Distances (n,) of points (n, 3) from a polyline (m, 3)."""
     place_count = 33  # points on each segment of the line
     steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
     places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)

@@ -1,7 +1,7 @@
-"""Checks of a mesh that should be a face, each with an error of one line.
+"""Check that a mesh can be a face; each check raises an error with a message of one line.
 
-A mesh must be one manifold surface, oriented outward, with a mouth and two eyes that are open or at
-least slit: no muscle can part welded lips.
+A mesh must be a manifold, oriented surface. Mouth and eyes must be open or at least slit, because
+muscles cannot part welded lips.
 """
 
 from __future__ import annotations
@@ -20,12 +20,11 @@ from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
 MOST_TRIANGLES = 250_000
-FEWEST_TRIANGLES = 300  # with fewer, eyes and mouth have no shape (chosen)
-# A path along the skin leads from lip to lip, or from lid to lid, around a corner of the opening.
-# If the shortest path is shorter than this share of the path around a corner, skin joins them. A
-# bag behind them may also join them, but its path is longer.
+FEWEST_TRIANGLES = 300  # chosen; with fewer, eyes and mouth have no shape
+# Skin joins two lips, or two lids, if the shortest path between them is shorter than this fraction
+# of the path around a corner of the opening. The path through a bag behind them is longer.
 JOINED_SHARE = 0.6
-# Landmarks of each eye: above and below, and corners.
+# Pairs of landmarks on the upper and the lower lid; landmarks at the corners of the eyes.
 LID_PAIRS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}
 
@@ -40,21 +39,21 @@ class ShutMouthError(CoveredError):
 
 @dataclass(frozen=True)
 class SkinPiece:
-    """The piece of a mesh with the landmarks, and its numbers in the whole mesh."""
+    """The piece of a mesh that has the landmarks, with its numbers in the whole mesh."""
 
     vertices: Floats64  # (V, 3)
     faces: Integers32  # (F, 3)
-    landmarks: Integers32  # (68,) numbers in this piece
-    file_vertices: Integers32  # (V,) numbers in the whole mesh
-    file_faces: Integers64  # (F,) numbers of the triangles in the whole mesh
+    landmarks: Integers32  # (68,) vertex numbers in this piece
+    file_vertices: Integers32  # (V,) vertex numbers in the whole mesh
+    file_faces: Integers64  # (F,) triangle numbers in the whole mesh
     is_turned: bool = False  # whether the file's triangles faced inward
 
 
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
-    """Leave out the pieces without a landmark: eyeballs, teeth, vertices of no triangle.
+    """Return the piece of a mesh that has the landmarks; it lacks eyeballs and loose vertices.
 
-    Triangles with a vertex twice, which have no area, are left out, too. Raises AssetError if
-    landmarks lie on two pieces or on none, or if there are too few or too many triangles.
+    Triangles that name a vertex twice are left out, too. Raises AssetError if the landmarks lie on
+    several pieces or on none, or if the piece has too few or too many triangles.
     """
     _check_count(faces, FEWEST_TRIANGLES, math.inf)
     is_triangle = ~_names_twice(faces)
@@ -77,11 +76,11 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
 def with_seams_joined(
     vertices: Floats64, faces: Integers32, landmarks: Integers32
 ) -> tuple[Integers32, Integers32]:
-    """Triangles and landmarks of a mesh after seams between its pieces are joined.
+    """Join the seams between pieces of a mesh; returns triangles and landmarks.
 
-    Programs double vertices where texture or material change, or in every triangle. If landmarks
-    lie on several pieces, coinciding vertices on the borders are merged. If the result is no
-    manifold surface, the arguments are returned unchanged.
+    Programs double vertices where texture or material changes, or in every triangle. If the
+    landmarks lie on several pieces, coinciding vertices on borders are merged. If the result is not
+    manifold, the arguments are returned unchanged.
     """
     piece = pieces_of(faces, len(vertices))
     if (piece[landmarks] == piece[landmarks[0]]).all():
@@ -111,9 +110,9 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
 
 
 def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
-    """The vertices of each piece of a mesh in rising order, without vertices of no triangle.
+    """The vertex numbers of each piece of a mesh, in rising order; loose vertices are left out.
 
-    piece: number of each vertex's piece, see `pieces_of`, shape (V,).
+    piece: piece of each vertex, see `pieces_of`, (V,).
     """
     used = np.unique(faces)
     order = used[np.argsort(piece[used], kind="stable")]
@@ -122,12 +121,12 @@ def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
 
 
 def _names_twice(faces: Integers32) -> Flags:
-    """Flags of triangles that have a vertex twice, shape (F,)."""
+    """Whether each triangle names a vertex twice; flags (F,)."""
     return np.asarray((faces == np.roll(faces, 1, axis=1)).any(axis=1))
 
 
 def check_manifold(faces: Integers32) -> None:
-    """Raise AssetError unless each edge has one or two triangles with the same orientation."""
+    """Raise AssetError unless each edge has one triangle, or two with equal orientation."""
     directed = sides_of(faces)
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
     if (uses > 2).any():
@@ -141,14 +140,14 @@ def check_manifold(faces: Integers32) -> None:
         a, b = half_edges[uses.argmax()]
         raise AssetError(
             f"the mesh is not oriented: both triangles at the edge of its vertices {a} and {b} run "
-            "along it the same way; make its normals agree"
+            "along it in the same direction; make its normals agree"
         )
 
 
 def check_pieces(faces: Integers32, count: int) -> None:
     """Raise AssetError if no piece of a mesh with `count` vertices could be a skin.
 
-    The error is about the largest piece.
+    The message is about the largest piece.
     """
     faces = faces[~_names_twice(faces)]
     if not len(faces):
@@ -170,7 +169,7 @@ def check_pieces(faces: Integers32, count: int) -> None:
 
 
 def check_openings(skin: SkinPiece) -> None:
-    """Raise AssetError if lips are welded or skin covers an eye; skin: in the face space [mm]."""
+    """Raise AssetError if lips are joined, or skin covers an eye; skin: in the face space [mm]."""
     middle_of_lips = (62, 66)  # inner landmarks, above and below
     over, under = skin.landmarks[list(middle_of_lips)]
     across, around = _across_and_around(skin, middle_of_lips, corners=(60, 64))
@@ -191,7 +190,7 @@ def check_openings(skin: SkinPiece) -> None:
 
 
 def notes_of_shut_eyes(skin: SkinPiece) -> tuple[str, ...]:
-    """A line that reports eyes whose lids touch at rest; none if all are open. [mm]"""
+    """A line for the user that reports eyes that are shut at rest; empty if both are open."""
     sides = [side for side in LID_PAIRS if _is_slit(skin, side)]
     if not sides:
         return ()
@@ -203,12 +202,12 @@ def notes_of_shut_eyes(skin: SkinPiece) -> tuple[str, ...]:
 
 
 def _is_slit(skin: SkinPiece, side: str) -> bool:
-    """Whether the lids of an eye touch, and join only around its corners."""
-    most_gap = 1.5  # [mm] between touching lids: their margins are rounded
+    """Whether the lids of an eye touch without being joined, except around its corners."""
+    most_gap = 1.5  # [mm] between landmarks of touching lids, because margins of lids are rounded
     for above, below in LID_PAIRS[side]:
         over, under = skin.landmarks[[above, below]]
         between = skin.vertices[over] - skin.vertices[under]
-        if np.linalg.norm(between[1:]) > most_gap:  # a shut lid slides aside
+        if np.linalg.norm(between[1:]) > most_gap:  # without x, because shut lids slide sideways
             return False
         across, around = _across_and_around(skin, (above, below), EYE_CORNERS[side])
         if across < JOINED_SHARE * around:
@@ -221,7 +220,8 @@ def _across_and_around(
 ) -> tuple[float, float]:
     """Lengths [mm] of two paths along the skin between landmarks above and below an opening.
 
-    The first is the shortest path, the second the shortest path over a corner of the opening.
+    The first path is the shortest one. The second is the shortest path around a corner of the
+    opening.
     """
     paths = path_lengths(skin.vertices, skin.faces, skin.landmarks[list(pair)])
     ends = skin.landmarks[list(corners)]
@@ -229,7 +229,7 @@ def _across_and_around(
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:
-    """Cut away a bag behind the lips, which the built-in mouth replaces; skin: face space [mm]."""
+    """Remove a bag behind the lips, which the built-in mouth replaces; skin: face space [mm]."""
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
     graph = length_graph(skin.vertices, skin.faces)
@@ -242,7 +242,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     least_bag_depth = 15.0  # [mm]
     if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
         return skin
-    rim_depth = 4.0  # [mm] of the bag stay behind the lips
+    rim_depth = 4.0  # [mm] of the bag that stay behind the lips
     is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > rim_depth
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
@@ -255,11 +255,11 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
 
 
 def _is_covered(corners: Floats64, point: Floats64) -> bool:
-    """Whether a ray from the front meets a triangle at a point, or a little behind it."""
+    """Whether a ray from the front meets a triangle near a point (3,); corners: (F, 3, 3) [mm]."""
     edges = np.roll(corners, -1, axis=1) - corners
     to = point - corners
     turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
     hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    # Skin down to this depth [mm] behind the lids' edges covers the eye; sockets are deeper.
+    # [mm] behind the lids' edges, up to which skin covers the eye; sockets are deeper.
     cover_depth = 6.0
     return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())

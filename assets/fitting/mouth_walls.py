@@ -1,10 +1,10 @@
-"""The walls of the mouth, which lie within the skin and stretch between both jaws.
+"""Fit the walls of the mouth into a head; they lie within the skin and stretch between both jaws.
 
 The upper walls hang from the skull, beside the teeth and behind the throat. They end at the floor
-of the mouth, which moves with the mandible. Each of their vertices takes a share of the mandible's
-motion (`Part.mandible_shares`). So they are only as long as a shut mouth needs, and do not reach
-the neck, which follows the head less and less. On another head they are moved toward the middle of
-the mouth where they would leave its skin.
+of the mouth, which moves with the mandible. Each vertex has a weight of the mandible's motion
+(`Part.mandible_shares`), so walls that are as long as a shut mouth suffice. They do not reach down
+to the neck, which follows the head only in part. On another head, vertices that would leave the
+skin are moved toward the centre of the mouth.
 """
 
 from __future__ import annotations
@@ -31,13 +31,14 @@ WALLS = "oral_cavity"  # beginning of the names of these parts
 
 @dataclass(frozen=True)
 class FittedSkin:
-    """The skin and eyes into which the built-in organs are fitted.
+    """The skin into which the built-in organs are fitted.
 
-    vertices, normals: the skin at rest [mm], shape (V, 3).
-    faces: triangles of the skin, counter-clockwise seen from outside, shape (F, 3).
-    landmarks: places [mm], shape (68, 3).
-    mandible_weight: carried over from the built-in head, shape (V,).
-    pieces: vertices [mm] of each other piece of the file, shape (n, 3).
+    vertices: the skin at rest [mm], (V, 3).
+    normals: unit normals of the vertices, (V, 3).
+    faces: triangles of the skin, counter-clockwise seen from outside, (F, 3).
+    landmarks: points [mm], (68, 3).
+    mandible_weight: weights of the mandible's motion, 0 to 1, (V,).
+    pieces: vertices of each other piece of the file [mm], (n, 3).
     """
 
     vertices: Floats64
@@ -49,9 +50,9 @@ class FittedSkin:
 
 
 def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:
-    """Move points of walls [mm], shape (n, 3), by their shares of the mandible's motion.
+    """Move points of walls [mm], (n, 3), by weights of the mandible's motion.
 
-    shares: 0 (fixed to the skull) to 1 (fixed to the mandible), shape (n,). mandible: motion
+    shares: weights, 0 (fixed to the skull) to 1 (fixed to the mandible), (n,). mandible: motion
     relative to the skull, a matrix (4, 4) for column vectors.
     """
     moved = moved_points(mandible, walls)
@@ -59,9 +60,9 @@ def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> 
 
 
 def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
-    """Motions of the mandible to a half open and to a wholly open mouth: matrices (4, 4).
+    """Motions of the mandible to a half open and to a fully open mouth: matrices (4, 4).
 
-    axis: centres of the right and the left condyle [mm], shape (2, 3).
+    axis: centres of the right and the left condyle [mm], (2, 3).
     """
     jaw = rig.get("jaw", {})
     right, left = axis
@@ -80,11 +81,13 @@ def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
 def within_skin(
     parts: Sequence[Part], fitted: FittedSkin, mouth: Similarity, jaws: Sequence[Floats64]
 ) -> list[Part]:
-    """Move parts toward the middle of the mouth until they lie `wall_depth` behind all skin.
+    """Move parts toward the centre of the mouth until they lie `wall_depth` behind all skin.
+
+    The skin is tested at rest and with open jaws. An open jaw also opens the throat of a mask, so
+    the border of the skin counts as closed only at rest.
 
     mouth: similarity from the built-in mouth to the head's mouth. jaws: motions of the mandible,
-    which the skin follows by `mandible_weight`. An open jaw also opens the throat of a mask, so the
-    border of the skin counts as closed only at rest.
+    which the skin follows by `mandible_weight`.
     """
     if not parts:
         return []
@@ -96,7 +99,7 @@ def within_skin(
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
     wall_depth = 6.0  # [mm] behind the skin
-    least_cosine = 0.35  # least cosine between the skin's normal and a ray (flatter: this)
+    least_cosine = 0.35  # bound of the cosine between the skin's normal and a ray
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, shares, mandible) - middle
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
@@ -111,17 +114,18 @@ def within_skin(
 
 
 def _mandible_shares(part: Part) -> ShareArray:
-    """The share of the mandible's motion at each vertex of a part, 0 to 1, shape (n,)."""
+    """The weight of the mandible's motion at each vertex of a part, 0 to 1, (n,)."""
     if part.mandible_shares is not None:
         return part.mandible_shares
     return np.full(len(part.vertices), 1.0 if part.bone == "mandible" else 0.0)
 
 
 def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
-    """Close the border of a skin by fans, except at lids and lips; return vertices and faces.
+    """Close the borders of a skin by fans of triangles, except lids and lips.
 
-    The tip of a fan is the middle of the border, for example in the plane of a cut neck. The border
-    of a mask goes around the face. Its fan has the tip behind the throat, to leave the throat room.
+    The tip of a fan is the centre of its border, for example in the plane of a cut neck. The border
+    of a mask runs around the face; its fan has the tip behind the throat, which needs room. Returns
+    vertices (V + n, 3) and faces (m, 3).
     """
     skin = fitted.vertices
     faces = fitted.faces

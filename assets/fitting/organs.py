@@ -1,9 +1,9 @@
 """Fit eyeballs, teeth, tongue and the inside of the mouth to another head.
 
-Eyeballs stay round: the landmarks of each eye give a first ball, which is then fitted behind the
-lids, so that they touch it all around. Teeth, gums and tongue stay stiff: they move by the
-similarity nearest to the warp. The walls of the mouth (mouth_walls.py) and the corners of the eyes
-bend with the warp.
+Eyeballs stay round. The landmarks of each eye give a first ball, which is then fitted behind the
+lids, so that the lids touch the ball all around. Teeth, gums and tongue stay rigid: a similarity
+near the warp moves them. The walls of the mouth (mouth_walls.py) and the corners of the eyes bend
+with the warp.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from .mouth_walls import WALLS, FittedSkin, within_skin
 from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
-STIFF = ("gums", "teeth", "tongue")  # beginnings of the names of stiff parts
-LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
-RIM_ROWS = 8  # of vertices, from the lids' edge backward
+STIFF = ("gums", "teeth", "tongue")  # beginnings of the names of rigid parts
+LID_CLEARANCE = 0.3  # [mm] between the eyeball and the skin of the lids
+RIM_ROWS = 8  # rows of a rim's vertices, from the lids' edge backward
 
 
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     """Place the eyeballs of a head behind its lids.
 
-    Place and size come from an eyeball of the file, else from a socket, else from the lids.
-    Eyeballs and irises vary less between people than the openings between the lids, so their
-    estimate is scaled by the square root of the ratio of the openings.
+    Position and size come from an eyeball in the file, else from a socket, else from the lids.
+    Eyeballs and irises vary less between people than the widths of eyes, so their estimated sizes
+    are scaled by the square root of the ratio of widths.
     """
     eyes = []
-    lid_depth = 5.0  # [mm] reach of a lid's inner skin from the landmarks on its edge
+    lid_depth = 5.0  # [mm] from the landmarks on a lid's edge, within which skin belongs to the lid
     for eye in known.eyes:
         around = EYE_LANDMARKS[eye.name]
         source = known.vertices[known.landmarks[around]]
@@ -48,7 +48,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
-        # Skin that faces the ball is the wall of a socket, and may be narrower than the ball.
+        # Skin that faces the ball is no lid, but the wall of a socket, which may be too narrow.
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[is_lid]])
@@ -59,7 +59,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         if own is None and socket is None:
             iris = radius / eye.radius * eye.iris_radius
         centre, radius = own or socket or (centre, radius)
-        most_iris = 0.8  # of the ball's radius; some balls are small for their face
+        most_iris = 0.8  # greatest radius of an iris, in radii of the ball; some balls are small
         iris = min(iris, most_iris * radius)
         if own is None:
             centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
@@ -68,7 +68,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
 
 
 def _extent(points: Floats64) -> float:
-    """Distance between the corners of an eye [mm]."""
+    """Distance between the corners of an eye [mm]; points: its landmarks, (6, 3)."""
     return float(np.linalg.norm(points[3] - points[0]))
 
 
@@ -77,19 +77,20 @@ def _behind_lids(
 ) -> tuple[Floats64, float]:
     """Centre and radius [mm] of the sphere that touches the lids from behind all around.
 
-    centre, radius: an estimate. middle: of the opening, (3,). skin: points of the lids, (n, 3).
+    centre, radius: an estimate. middle: centre of the opening, (3,). skin: points of the lids,
+    (n, 3).
     """
     around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
-    sector_count = 12  # around an eye; in each one, the nearest skin should touch the eyeball
+    sector_count = 12  # around an eye; in each sector the nearest skin should touch the eyeball
     sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: Floats64) -> Floats64:
-        """Errors of the sphere: gap to the lids in each sector, shift aside, change of size."""
+        """Errors of the sphere: gap to the lids in each sector, sideways shift, change of size."""
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
         gaps -= size + LID_CLEARANCE
-        aside_cost = 2.0  # per millimetre: an eye lies behind the middle of its opening
+        aside_cost = 2.0  # per millimetre, because an eye lies behind the centre of its opening
         aside = aside_cost * (values[:2] - centre[:2])
         size_cost = 20.0  # [mm] for a sphere twice as large
         sunk_cost = 3.0  # cost of skin inside the ball, relative to a gap in front of it
@@ -97,7 +98,7 @@ def _behind_lids(
             [np.where(gaps < 0.0, sunk_cost * gaps, gaps), aside, [size_cost * values[3]]]
         )
 
-    # [mm] of error from which a sector counts less, because the corners of an eye are off the ball.
+    # [mm]; sectors with a greater error count less, because the corners of an eye are off the ball.
     touching_distance = 0.5
     found = scipy.optimize.least_squares(
         off, np.append(centre, 0.0), loss="soft_l1", f_scale=touching_distance
@@ -121,9 +122,9 @@ def lids_on_eyes(
 ) -> Floats64:
     """Move the lids to the same distance from the eyes as on the built-in head.
 
-    eyes: in the order of `known.eyes`. shares: how far each row of vertices around the eye moves,
-    from its edge outward, as a share of the whole way. The corners of the eye stay, because they
-    rest on flesh.
+    The corners of the eye stay, because they rest on flesh. eyes: in the order of `known.eyes`.
+    shares: for each ring of vertices around the eye, from the lids' edge outward, the fraction of
+    the whole motion. Returns vertices [mm], (V, 3).
     """
     placed = vertices.copy()
     for old, new in zip(known.eyes, eyes, strict=True):
@@ -149,7 +150,7 @@ def place_parts(
     """Fit the parts inside the built-in head into another head.
 
     warp: from the built-in head to the other head. jaws: motions of the mandible, see
-    `opened_jaws`. kept_bone: bone of the parts that do not change.
+    `opened_jaws`. kept_bone: parts of this bone are not changed.
     """
     mouth = _mouth_of(known, fitted, warp)
     rises = _rises_of_jaws(known, fitted.landmarks, mouth)
@@ -174,7 +175,7 @@ def place_parts(
 
 
 def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
-    """The similarity that moves the stiff parts of the mouth, as one body, behind the skin."""
+    """Find the similarity that moves the rigid parts of the mouth together behind the skin."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
     ]
@@ -184,27 +185,28 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
     least_forward = 0.2  # z of a normal; skin with a larger one may be in front of teeth
     skin = fitted.vertices[fitted.normals[:, 2] > least_forward]
-    # Teeth and gums stay behind skin within this distance [mm], and at most this many vertices.
+    # Teeth and gums stay behind skin within this distance in x and y [mm]; of each point, this many
+    # nearest vertices count.
     teeth_clearance = 4.0, 3
     distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=teeth_clearance[1])
     stiff_depth = 2.5  # [mm] from teeth and gums to the skin; lips and cheeks are thicker
     depth = (
         np.where(distance < teeth_clearance[0], skin[beside, 2], np.inf).min(axis=1) - stiff_depth
     )
-    farthest_back = 10.0  # [mm] by which the teeth move back at most
+    farthest_back = 10.0  # [mm]; greatest motion of the teeth backward
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
 
 def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple[float, float]:
-    """Rise [mm] of the upper and the lower jaw from their places in a shut mouth.
+    """Motions of the upper and the lower teeth upward [mm], relative to a shut mouth.
 
-    If a mouth is open at rest, each jaw moves with its lip. Otherwise shut teeth with much gum
-    would show between the lips. landmarks: places [mm], (68, 3).
+    If a mouth is open at rest, each row of teeth moves with its lip. Otherwise shut teeth with much
+    gum would show between the lips. landmarks: points [mm], (68, 3).
     """
     inner_lips = slice(61, 64), slice(65, 68)
     upper, lower = (landmarks[lip, 1].mean() for lip in inner_lips)
-    most_of_shut = 3.0  # [mm] between the lips, up to which the teeth are shut
+    most_of_shut = 3.0  # [mm] between the lips, up to which the teeth stay shut
     if upper - lower <= most_of_shut:
         return 0.0, 0.0
     own = mouth.points(known.vertices[known.landmarks])
@@ -223,7 +225,7 @@ def _moved(part: Part, similarity: Similarity) -> Part:
 
 
 def _resized(part: Part, old: Eye, new: Eye) -> Part:
-    """Give an eyeball the size, the place and the iris of another eye."""
+    """Give an eyeball the size, the position and the iris of another eye."""
     away = part.vertices - old.centre
     reach = np.linalg.norm(away, axis=1)
     angle = np.arccos(away[:, 2] / reach)
@@ -238,7 +240,7 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
 
 
 def _bent(part: Part, warp: ThinPlateSpline) -> Part:
-    """Bend a part by the warp."""
+    """Bend a part by a warp."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
     normals = unit_vectors(ahead)
@@ -253,7 +255,8 @@ def with_eyelid_rims(
     The built-in lids reach behind the front of the ball, and flesh fills the corners of the eye.
     The lids of other meshes may end in front of the ball. Without a rim, a gap into the empty head
     would show.
-    vertices: those of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
+
+    vertices: vertices of the skin [mm], (V, 3). faces: triangles of the skin, (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
     flesh = "eye_corners"  # rims belong to this part and have its colour
@@ -269,9 +272,9 @@ def with_eyelid_rims(
 
 
 def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
-    """Remove the flesh in the corners of closed sockets, which the head's own skin fills."""
+    """Remove flesh from the corners of eyes with closed sockets, which skin of the head fills."""
     middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
-    most_radii = 2.0  # reach of an eye's flesh, in radii of the eyeball
+    most_radii = 2.0  # greatest distance of flesh from its eye, in radii of the eyeball
     stays = np.ones(len(part.faces), np.bool_)
     for eye in closed:
         stays &= np.linalg.norm(middle - eye.centre, axis=1) > most_radii * eye.radius
@@ -286,8 +289,8 @@ def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
 
 
 def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
-    """Vertices of the skin's edge around an eye, in the order of its faces; [] if it has none."""
-    most_radii = 1.6  # reach of the edge from the ball's centre, in radii
+    """Vertex numbers of the skin's edge around an eye, in the order of faces; [] for no edge."""
+    most_radii = 1.6  # greatest distance of the edge from the ball's centre, in radii
     reach = most_radii * eye.radius
     away = np.linalg.norm(vertices - eye.centre, axis=1)
     near = faces[(away[faces] < 2.0 * reach).any(axis=1)]  # all faces would take a second
@@ -296,10 +299,10 @@ def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
 
 
 def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
-    """Vertices (RIM_ROWS n, 3) of a rim, row by row, and its faces, turned to the front.
+    """Make a rim: its vertices row by row, (RIM_ROWS n, 3), and its faces, which face forward.
 
-    edge: points of the skin's edge, shape (n, 3), in the order of its faces. A line of vertices
-    runs from each point backward around the ball and approaches it.
+    From each point of the skin's edge, a line of vertices runs backward around the ball, and
+    approaches the ball. edge: points of the skin's edge [mm], (n, 3), in the order of its faces.
     """
     away = edge - eye.centre
     length = np.linalg.norm(away, axis=1)
@@ -319,11 +322,11 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
 
 
 def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
-    """Add rims, which have the part's colour and darken backward, to a part."""
+    """Add rims to a part; they have its colour, and become darker toward their rear ends."""
     if not rims:
         return part
     colour = part.colours.mean(axis=0)
-    least_light = 0.6  # share of light at the shaded end of a rim
+    least_light = 0.6  # fraction of light at the rear end of a rim
     for points, faces in rims:
         light = np.repeat(np.linspace(1.0, least_light, RIM_ROWS), len(points) // RIM_ROWS)
         part = replace(

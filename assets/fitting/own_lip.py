@@ -1,7 +1,7 @@
-"""Find the nearest places on the warped built-in skin, with each lip on the same lip.
+"""Find the nearest points on the warped built-in skin, so that each lip finds the same lip.
 
-Full lips overlap: one lip may lie in front of the other's edge. There the warped lips cross, and
-the nearest point may be on the other lip.
+Full lips overlap: one lip may lie in front of the other lip's edge. There the warped lips cross, so
+the nearest point may belong to the other lip.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from .warp import nearest_on
 
 
 def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats64) -> SurfacePoints:
-    """Nearest places on the warped built-in skin for a skin's vertices [mm], see `nearest_on`.
+    """Nearest points on the warped built-in skin for a skin's vertices [mm], as by `nearest_on`.
 
-    No vertex of one lip gets a place on the other lip.
+    No vertex of one lip gets a point of the other lip. warped: vertices of the built-in skin, (V,
+    3). normals: unit normals of the skin's vertices.
     """
     found = nearest_on(skin.vertices, normals, warped, known.faces)
     own = _lip_sides(skin.vertices, skin.faces, skin.landmarks)
@@ -38,12 +39,12 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
 
 
 def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
-    """1 on the upper lip, -1 on the lower lip, 0 between the lips and elsewhere; shape (V,)."""
+    """For each vertex 1 on the upper lip, -1 on the lower lip, else 0; (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
     ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
     upper, lower = ways
     lip_reach = 20.0  # [mm] along the skin from the inner edge of a lip
-    between = 4.0  # [mm] by which the path to the other lip must be longer
+    between = 4.0  # [mm]; least difference between the paths to both lips
     sides = np.zeros(len(vertices), np.int32)
     sides[(upper < lip_reach) & (upper + between < lower)] = 1
     sides[(lower < lip_reach) & (lower + between < upper)] = -1
@@ -51,7 +52,7 @@ def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> 
 
 
 def _replaced(points: SurfacePoints, where: Flags, others: SurfacePoints) -> SurfacePoints:
-    """Replace some places by others."""
+    """Replace those points where a flag of `where` (n,) is set."""
     places = {}
     for name in ("distances", "triangles", "corners", "weights"):
         values = getattr(points, name).copy()

@@ -1,15 +1,13 @@
-"""Texture coordinates of another head in the picture of the built-in skin.
+"""Give another head texture coordinates in the built-in texture, or maps for its own texture.
 
-A vertex takes the texture coordinates of the nearest point on the warped built-in skin, its foot.
+A vertex takes the texture coordinates of its foot, the nearest point on the warped built-in skin.
 This is right on a face, but wrong where one head has folds that the other lacks: in nostrils,
 behind ears, in the mouth. So a farther foot is trusted less, and a foot on an ear or in a nostril
-is not trusted at all. Vertices between trusted ones are spread evenly, as if by springs. Because
-its surroundings are fixed, such a patch covers the enclosed area once (Tutte 1963, "How to draw a
-graph").
+is not trusted at all. Springs spread the vertices between trusted ones evenly. Because the border
+of such a patch is fixed, the patch does not overlap itself (Tutte 1963, "How to draw a graph").
 
-A mesh with its own picture keeps its own texture coordinates. The maps of the built-in head
-(wrinkles, and segments such as nose and lips) are then drawn again, texel by texel, in the layout
-of this picture.
+A mesh with a texture keeps its texture coordinates. The maps of the built-in head (wrinkles, and
+segments such as nose and lips) are then drawn again, texel by texel, in the layout of this texture.
 """
 
 from __future__ import annotations
@@ -42,30 +40,30 @@ def spread_uv(
     nearest: SurfacePoints,
     skin: tuple[Floats64, Floats64, Integers32],
 ) -> Floats32:
-    """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
+    """Texture coordinates in the built-in texture for another head's vertices, (V, 2).
 
-    warped: vertices of the built-in skin after the warp. nearest: the foot of each vertex on it.
-    skin: the other head's vertices, unit normals and faces.
+    warped: vertices of the built-in skin after the warp [mm], (n, 3). nearest: foot of each vertex
+    on this skin. skin: the other head's vertices (V, 3) [mm], unit normals (V, 3) and faces (F, 3).
     """
     vertices, normals, faces = skin
     feet = nearest.interpolate(warped)
     away = np.linalg.norm(feet - vertices, axis=1)
     across = cross_products(warped, nearest.corners)
     across = unit_vectors(across)
-    trusted_within = 6.0  # [mm] distance from a foot at which its trust is half
+    trusted_within = 6.0  # [mm]; at this distance from its foot, the trust of a vertex is half
     trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
-    least_cosine = 0.3  # between the normals of a vertex and of its foot
+    least_cosine = 0.3  # between the normals of a vertex and its foot
     trust[(across * normals).sum(axis=1) < least_cosine] = 0.0
     is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
-    # A neck or shoulders that reach below the built-in head have their feet on its rim.
+    # Necks and shoulders below the built-in head have their feet on its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
     count = len(vertices)
     links = edges_of(faces)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
-    # Shorter edges are stiffer. With equal stiffness, short and long edges would get equal steps in
-    # the picture.
+    # Shorter edges are stiffer. With equal stiffness, short and long edges would become equally
+    # long in the texture.
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
     # [mm] A least distance limits the stiffness between close neighbours.
     least_distance = 0.05
@@ -75,7 +73,7 @@ def spread_uv(
     degree = linked.sum(axis=0)
     neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
     hold_range = 4.0, 12.0
-    least_trust = 1e-6  # above 0, so that every vertex gets a place
+    least_trust = 1e-6  # above 0, so that the system has a solution for every vertex
     hold = (
         neighbour
         * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
@@ -94,13 +92,14 @@ def spread_uv(
 
 
 def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> Flags:
-    """Whether another part of the skin has the same foot and lies nearer to it, shape (V,).
+    """Whether another part of the skin has the same foot as a vertex, and lies nearer to it, (V,).
 
-    links: edges, shape (E, 2). The middles of long edges count like vertices, because the vertices
-    of a coarse skin are too far apart to separate a nostril from the nose around it.
+    feet: foot of each vertex, (V, 3). links: edges, (E, 2). Midpoints of long edges also count,
+    because the vertices of a coarse skin are too far apart to separate a nostril from the nose
+    around it.
     """
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] Competing feet are nearer to each other, and their vertices are farther apart.
+    # [mm]; competing vertices are farther apart than this, and their feet nearer.
     competing_distance = 2.0
     long = links[lengths > competing_distance]
     all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
@@ -118,10 +117,10 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
 
 
 def plain_skin(known: Head) -> tuple[Image, Image]:
-    """The built-in picture with plain skin for ears and nostrils, and light without their shade.
+    """The built-in albedo and ambient occlusion without ears and nostrils.
 
-    Another head has its ears and nostrils in other places, where its form and the light show them.
-    The pictures ship as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
+    Ears and nostrils of another head lie elsewhere; its shape and the light show them. The package
+    has both textures as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
     """
     drawn = read_arrays(known.beside("_plain.npz"))
     picture = known.albedo.copy()
@@ -133,33 +132,36 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
 
 @dataclass(frozen=True)
 class Layout:
-    """Places of triangles in a picture: texture coordinates, and their numbers at corners."""
+    """The layout of triangles in a texture.
+
+    uv: texture coordinates, (U, 2). face_uv: rows of `uv` at the corners of triangles, (F, 3).
+    """
 
     uv: Floats32
     face_uv: Integers32
 
     @property
     def corners(self) -> Floats64:
-        """Texture coordinates of each triangle's corners, shape (F, 3, 2)."""
+        """Texture coordinates of the corners of each triangle, (F, 3, 2)."""
         return self.uv.astype(np.float64)[self.face_uv]
 
 
 def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
-    """The texels that triangles cover in a picture of (height, width), and one texel around.
+    """The texels that triangles cover in a texture of (height, width), and one texel around them.
 
-    Raises AssetError if triangles cover the picture many times over.
+    If triangles cover the texture many times over, raises AssetError.
     """
     try:
         return Texels.within(layout.corners, size, margin=1.0)  # colours blend across edges
     except ValueError:
         raise AssetError(
-            "its texture coordinates cover the picture many times over; unwrap it anew, or remove "
+            "its texture coordinates cover the texture many times over; unwrap it again, or remove "
             "its materials"
         ) from None
 
 
 def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
-    """The texels of a picture at texture coordinates (n, 2)."""
+    """The texels of a texture (H, W, C) at texture coordinates (n, 2), (n, C)."""
     height, width = picture.shape[:2]
     columns, rows = np.floor(uv * [width, -height] + [0.0, height]).astype(np.int64).T
     found: Unsigned8 = picture[rows.clip(0, height - 1), columns.clip(0, width - 1)]
@@ -167,9 +169,10 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
 
 
 def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
-    """Draw triangles of `layout` over a picture.
+    """Draw the triangles of a layout over a texture (H, W, 3), uint8.
 
-    colours: of each corner, shape (F, 3, 3); or another picture, and the triangles' layout in it.
+    colours: colour of each corner, 0 to 255, (F, 3, 3); or another texture, and the layout of the
+    triangles in it.
     """
     texels = texels_within(layout, picture.shape[:2])
     if isinstance(colours, tuple):
@@ -184,12 +187,12 @@ def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, 
 def maps_in(
     known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (SIZE, SIZE)
 ) -> tuple[Wrinkles, Image, Image]:
-    """The built-in head's wrinkles, segments and light, in the layout of another mesh.
+    """Draw the built-in wrinkles, segments and ambient occlusion in the layout of another mesh.
 
-    theirs: the built-in layout of the same triangles. size: (H, W) of the picture and of the
-    returned light.
+    theirs: layout of the mesh's triangles in the built-in texture. own: layout in the mesh's own
+    texture. size: (H, W) of this texture and of the returned ambient occlusion.
     """
-    import PIL.Image  # which to load a head takes no time for
+    import PIL.Image  # here, because most heads do not need it
 
     texels = texels_within(own, (SIZE, SIZE))
     place = texels.interpolate(theirs.corners)
@@ -201,7 +204,7 @@ def maps_in(
     change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change, slope)
-    steepest_percentile = 99.9  # [percent] of slopes that are not clipped
+    steepest_percentile = 99.9  # [%] of slopes that are not clipped
     steepest = (
         max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
     )
@@ -213,10 +216,10 @@ def maps_in(
 
 
 def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
-    """Rates of change of the built-in layout along another, shape (U, 4) for its `uv`.
+    """Derivatives of the built-in layout by another layout, at each row of its `uv`, (U, 4).
 
-    They are means over the surrounding triangles, weighted by area. Rates of single triangles jump
-    at edges, which would break a furrow into pieces.
+    They are means over the surrounding triangles, weighted by area. Derivatives of single triangles
+    jump at edges, which would break a furrow into pieces.
     """
     corners = own.corners
     ways = corners[:, 1:] - corners[:, :1]
@@ -230,12 +233,12 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
-    """The picture of some triangles and their layout in it; None without a picture.
+    """The texture of some triangles, and their layout in it; None if they have no texture.
 
-    Several pictures become one, side by side; triangles without a picture get the mean colour.
-    turned: whether to reverse the order of each triangle's corners.
+    Several textures are put side by side into one. Triangles without a texture get the mean colour.
+    faces: numbers of the triangles, (F,). turned: whether to reverse the corners of each triangle.
     """
-    import PIL.Image  # which to load a head takes no time for
+    import PIL.Image  # here, because most heads do not need it
 
     numbers = texture.picture[faces]
     used = np.unique(numbers)

@@ -1,4 +1,4 @@
-"""Make a separate head from the simplified mesh of a dense head, for small files."""
+"""Make a separate head of the simplified mesh of a dense head, for small files."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .warp import nearest_on
 
 
 def simplified_head(head: FittedHead) -> FittedHead:
-    """A head whose only mesh is the simulated mesh of `head`; it moves as `head` does.
+    """Make a head whose only mesh is the simulated mesh of `head`; both move alike.
 
-    The picture of `head` is drawn again in the built-in layout. Raises AssetError for a head
-    without a simplified mesh.
+    The texture of `head` is drawn again in the built-in layout. A head without a simplified mesh
+    raises AssetError.
     """
     coarse = head.simplified
     if coarse is None:
@@ -56,7 +56,7 @@ def simplified_head(head: FittedHead) -> FittedHead:
 
 
 def _drawn_anew(head: FittedHead, picture: Image, layout: Layout) -> Image:
-    """Draw the picture of a head's skin over another one, in the layout of its simplified mesh."""
+    """Draw the texture of a head over another one, in the layout of the head's simplified mesh."""
     assert head.simplified is not None
     coarse = head.simplified
     texels = texels_within(layout, picture.shape[:2])

@@ -19,16 +19,17 @@ from ..topology import border_vertices, collapsed, is_manifold
 from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece
 
-MOST_SIMULATED = 20_000  # triangles; with more, motion looks the same and takes longer
-SIMPLIFIED = 15_000  # triangles of a simplified mesh
+MOST_SIMULATED = 20_000  # triangles; more would take longer, and motion would look the same
+SIMPLIFIED = 15_000  # number of triangles of a simplified mesh
 
 
 @dataclass(frozen=True)
 class SimulatedHead:
     """A mesh with all data for `sim.create`; it has the attributes of `Head`.
 
-    uv: texture coordinates in the built-in picture, shape (V, 2).
-    jaw_axis: None without a visible ear; `sim.create` then guesses the axis from the landmarks.
+    uv: texture coordinates in the built-in texture, (V, 2).
+    jaw_axis: condyles [mm], (2, 3); None if no ear was found. Then `sim.create` guesses the axis
+        from the landmarks.
     """
 
     vertices: Floats64
@@ -48,14 +49,14 @@ class SimulatedHead:
 
 
 def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """The same form [mm] with about SIMPLIFIED triangles, most of them on the head.
+    """Simplify a skin [mm] to about SIMPLIFIED triangles, most of them on the head.
 
-    landmarks: places [mm], shape (68, 3).
+    landmarks: points [mm], (68, 3). Raises AssetError if no attempt gives a manifold surface.
     """
     distance = scipy.spatial.cKDTree(landmarks).query(skin.vertices)[0]
     head_reach = 100.0  # [mm] around the landmarks; the body lies farther away
     is_head = (distance < head_reach)[skin.faces].any(axis=1)
-    most_attempts = 8  # at a result that is a manifold surface
+    most_attempts = 8  # to get a manifold surface
     for attempt in range(most_attempts):
         vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
         if is_manifold(faces):
@@ -71,9 +72,10 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
 
 
 def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
-    """Vertices and fewer triangles; the head gets as many as it needs, the body what is left.
+    """Simplify a skin to SIMPLIFIED triangles; returns vertices and faces.
 
-    is_head: flags of the skin's triangles, shape (F,).
+    The head keeps up to four fifths of them, or more if the body is small; the body gets the rest.
+    is_head: flags of the skin's triangles, (F,).
     """
     body = skin.faces[~is_head]
     if not len(body):
@@ -89,7 +91,7 @@ def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Int
 def _part_with(
     vertices: Floats64, faces: Integers32, count: int, attempt: int
 ) -> tuple[Floats64, Integers32]:
-    """Simplify a part of a mesh to `count` triangles; its borders stay in place."""
+    """Simplify a part of a mesh to `count` triangles; its border stays in place."""
     used, numbers = np.unique(faces, return_inverse=True)
     part = numbers.reshape(-1, 3).astype(np.int32)
     if len(part) <= count:
@@ -98,11 +100,11 @@ def _part_with(
 
 
 def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers32]:
-    """Split vertices where sheets of a mesh touch along an edge.
+    """Split vertices at edges where more than two triangles meet; returns vertices and faces.
 
-    `collapsed` pinches folds of a dense mesh, so that more than two triangles meet at an edge. A
-    vertex is not split if edges with two triangles connect all triangles around it. Only the
-    largest piece is kept; others were attached by pinched edges alone.
+    `collapsed` makes such edges when it pinches folds of a dense mesh. A vertex is not split if
+    edges with two triangles connect all triangles around it. Only the largest piece is kept; others
+    were attached only by pinched edges.
     """
     sides = sides_of(faces)
     _, edge = different_pairs(np.sort(sides, axis=1))
@@ -128,7 +130,7 @@ def _sewn(
     """Join two parts of a mesh along their common border."""
     edge = border_vertices(faces)
     more_edge = border_vertices(more_faces)
-    joined_share = 2e-4  # of the size of both parts; `collapsed` moves a border by less
+    joined_share = 2e-4  # relative to the size of both parts; `collapsed` moves borders by less
     joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
     distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
     is_joined = distance < joined_distance

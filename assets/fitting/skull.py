@@ -1,10 +1,10 @@
-"""The parts under the skin of an opened head: skull, cartilage of the nose, throat.
+"""Build the parts under the skin of an opened head: skull, cartilage of the nose, throat.
 
-They ship as data (`data/skull.npz`) and are not from a scan. Programs of revision f4bd608f
-(`assets/skull.py`, `assets/throat.py`) made them from the built-in skin of that time: they moved it
-inward by the depth of bone, and used measures of an adult skull. A warp by landmarks and by
-directions of the scalp fits the parts to another head. The cranium is pushed in where it would
-leave the skin.
+The parts are data of the package (`data/skull.npz`), and not from a scan. Programs of revision
+f4bd608f (`assets/skull.py`, `assets/throat.py`) made them from the built-in skin of that time. The
+programs moved the skin inward by the depth of bone, and used measures of an adult skull. A warp by
+landmarks, and by directions of the scalp, fits the parts to another head. Where the cranium would
+leave the skin, it is pushed inward.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from ..model import Part
 from ..topology import boundary_loops, grid_faces
 from .warp import ThinPlateSpline
 
-FAT = np.array([0.82, 0.62, 0.42])
-FLESH = np.array([0.50, 0.17, 0.15])
+FAT = np.array([0.82, 0.62, 0.42])  # sRGB
+FLESH = np.array([0.50, 0.17, 0.15])  # sRGB
 
 
 def build_skull(
@@ -34,10 +34,10 @@ def build_skull(
     pivots: Mapping[str, Floats64],
     names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
 ) -> dict[str, Part]:
-    """Build the parts under the skin at rest, all of them or those in `names`.
+    """Build the parts in `names` under the skin at rest: name -> part.
 
-    head: any object with vertices, faces and landmarks. pivots: "mandible" -> the point about which
-    it turns, (3,). Raises AssetError if the file is missing or broken.
+    head: any object with vertices (V, 3) [mm], faces (F, 3) and landmarks (68,). pivots: "mandible"
+    -> the points around which it turns [mm]. If the file is missing or broken, raises AssetError.
     """
     file = Path(__file__).parents[1] / "data" / "skull.npz"
     arrays = read_arrays(file)
@@ -45,7 +45,7 @@ def build_skull(
     kept = load("head").landmarks
     own = head.landmarks
     bare = np.arange(len(head.vertices))
-    # No landmarks lie on the top and the back of the head; ears are left out [mm].
+    # Top and back of the head [mm], where no landmarks lie; without ears.
     is_behind = (known[:, 2] < -20.0) & (abs(known[:, 0]) < 65.0)
     is_far = (known[:, 1] > 55.0) | is_behind
     has_built_in_vertices = hasattr(head, "anatomy") and len(head.vertices) == len(known)
@@ -66,20 +66,20 @@ def build_skull(
     )
     normals = vertex_normals(head.vertices, head.faces)[bare]
     parts = {}
-    # Colours in sRGB of hollows and of the outside.
+    # Colours of hollows and of the outside, sRGB.
     bone_colours = np.array([0.34, 0.235, 0.165]), np.array([0.90, 0.85, 0.735])
     colours = {
         "nose": (np.array([0.50, 0.42, 0.40]), np.array([0.80, 0.82, 0.80])),
         "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
     }
     brows = head.vertices[head.landmarks[17:27], 1].max()
-    back = pivots["mandible"][2] - 28.0  # [mm] behind the condyles: pushed, too
+    back = pivots["mandible"][2] - 28.0  # [mm]; bone behind this z is pushed, too
     for name in names:
-        faces = arrays[f"{name}_faces"].T.astype(np.int32)  # each row is a step from the one before
+        faces = arrays[f"{name}_faces"].T.astype(np.int32)  # stored as differences
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]
         points = warp.points(0.02 * arrays[f"{name}_vertices"].T)  # integers to mm
-        if name == "cranium":  # few landmarks hold its top, back and sides
+        if name == "cranium":  # few landmarks fix its top, back and sides
             free = np.maximum(points[:, 1] - brows, back - points[:, 2])
             points = _under_skin(points, free, head.vertices[bare], normals)
         dark, bright = colours.get(name, bone_colours)
@@ -90,26 +90,26 @@ def build_skull(
 
 
 def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
-    """Find the vertices that lie in given directions from the middle of the cranium.
+    """Find the vertices that lie in given directions from the centre of the cranium.
 
-    ways: (n, 3) gives the directions, seen: (m, 3) the vertices, both from the condyles [mm].
-    Returns flags of directions with a vertex, (n,), and numbers of the nearest vertices, (n,).
+    ways: points in the directions, (n, 3). seen: vertices, (m, 3). Both are relative to the
+    condyles [mm]. Returns whether each direction has a vertex, and the nearest vertices, both (n,).
     """
-    centre = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles
+    centre = np.array([0.0, 40.0, 0.0])  # [mm] relative to the condyles
     apart = scipy.spatial.distance.cdist(ways - centre, seen - centre, "cosine")
     return apart.min(axis=1) < 0.01, apart.argmin(axis=1)
 
 
 def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Floats64) -> Floats64:
-    """Push points of bone inward where they would leave the skin.
+    """Push points of bone inward where they would leave the skin; returns points [mm], (n, 3).
 
-    points: (n, 3) [mm]. free: (n,) distance of each point inside the pushed region [mm]. skin,
-    normals: (m, 3) vertices of the skin and their normals.
+    points: [mm], (n, 3). free: how far each point lies inside the region of pushing [mm], (n,).
+    skin: vertices [mm], (m, 3). normals: unit normals of these vertices, (m, 3).
     """
     neighbour_count = 6
     away, near = scipy.spatial.cKDTree(skin).query(points, k=neighbour_count)
     shares = 1.0 / np.maximum(away, 1.0) ** 2
-    fade_depth = 10.0  # [mm] over which the push begins
+    fade_depth = 10.0  # [mm] inside the region, over which pushing begins
     most_distance = 40.0  # [mm] from bone to the skin; farther bone is not pushed
     pushed = np.clip(free / fade_depth, 0.0, 1.0) * (away[:, 0] < most_distance)
     shares *= (pushed / shares.sum(axis=1))[:, None]
@@ -120,10 +120,10 @@ def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Float
 
 
 def neck_sections(head: Any) -> list[Part]:
-    """Parts that close the cut through a neck; head: has vertices, faces and landmarks."""
+    """Make parts that close the cut through a neck; head: has vertices, faces and landmarks."""
     chin = head.vertices[head.landmarks[8], 1]
     parts = []
-    # Share of the radius, and colour.
+    # Pairs: fraction of the radius, and colour.
     rings = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
@@ -140,7 +140,7 @@ def _part(name: str, points: Floats64, faces: Any, colours: Floats64, bone: str)
     places, normals, inks = (
         each.astype(np.float32) for each in (points, vertex_normals(points, faces), colours)
     )
-    # Parts that are not listed move with the bone of the same name.
+    # Other parts move with the bone of the same name.
     bone_of_part = {"nose": "cranium", "throat": "cranium", "spine": "neck"}
     bone_shine = 0.28
     return Part(name, places, normals, faces, inks, bone_of_part.get(bone, bone), bone_shine)

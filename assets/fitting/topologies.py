@@ -1,13 +1,13 @@
-"""Recognise heads of known topologies, whose 68 landmarks need no file.
+"""Recognise heads of known topologies, which need no landmark file.
 
-A topology is recognised by its counts of vertices and triangles, by some edges, and by lengths of
-these edges. The counts are of a whole file or of one piece, so eyes, teeth and helper objects may
-be missing. topologies.toml has the included topologies. Users add others in JSON files, one
-topology in each:
+A topology is recognised by its numbers of vertices and triangles, by some edges, and by the lengths
+of these edges. The numbers may be those of a whole file or of one piece, so eyes, teeth and helper
+objects may be missing. topologies.toml has the included topologies. Users add others in JSON files,
+each with one topology:
 
     {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
 
-The built-in head (with all persons) and the coarse one are recognised, too.
+The built-in head, which is that of all persons, and the coarse head are recognised, too.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ OUTER_EYE_CORNERS = (36, 45)  # landmarks
 
 @dataclass(frozen=True)
 class Topology(Record):
-    """A known arrangement of vertices.
+    """A known topology.
 
-    counts: pairs of numbers of vertices and triangles, of the whole file or one piece.
-    landmarks: 68 vertex numbers from 0, in the file or within the piece.
-    edges: two vertices, and their distance as a share of the distance of the outer eye corners.
+    counts: pairs of the numbers of vertices and of triangles, in a whole file or in one piece.
+    landmarks: 68 vertex numbers from 0, in the file or in the piece.
+    edges: two vertex numbers, and their distance divided by the distance of the outer eye corners.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Topology(Record):
     edges: list[tuple[Number, Number, float]] = field(default_factory=list)
 
     def check(self, where: str) -> None:
-        """Raise AssetError unless a file names 68 vertices within its counts."""
+        """Raise AssetError unless there are 68 landmarks, and all vertex numbers are in range."""
         fewest = min((vertices for vertices, _ in self.counts), default=0)
         if len(self.landmarks) != COUNT:
             raise AssetError(
@@ -74,21 +74,21 @@ class Topology(Record):
 
 @dataclass(frozen=True)
 class KnownHead:
-    """A topology that was found in a mesh. landmarks: vertices of the mesh, (68,)."""
+    """A topology that was recognised in a mesh; landmarks: vertex numbers of the mesh, (68,)."""
 
     name: str
     landmarks: Integers32
 
 
 def topologies_folder() -> Path:
-    """The folder of a user's own topologies, which may be missing."""
+    """The folder of the user's topologies, which need not exist."""
     return configuration_folder() / "topologies"
 
 
 def recognised(mesh: Mesh) -> KnownHead | None:
-    """Recognise the known topology of a mesh or of one of its pieces; None without one.
+    """Recognise the topology of a mesh or of one of its pieces; None if it is unknown.
 
-    Raises AssetError for an unusable file among the user's topologies.
+    If a file of the user's topologies is unusable, raises AssetError.
     """
     known = [*_own_topologies(), *_built_in_topologies()]
     for numbers, triangles in _candidates(mesh):
@@ -100,7 +100,7 @@ def recognised(mesh: Mesh) -> KnownHead | None:
 
 
 def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
-    """Vertex numbers and the count of triangles of each piece, then of the whole mesh."""
+    """Vertex numbers and number of triangles of each piece, then of the whole mesh."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
     for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
@@ -110,7 +110,7 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
 
 
 def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
-    """Whether all edges of a topology are sides of triangles, with about the expected lengths."""
+    """Whether the mesh has all edges of a topology, with about the expected lengths."""
     if not topology.edges:
         return True
     first, second = numbers[[edge[:2] for edge in topology.edges]].T
@@ -118,7 +118,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
     right, left = numbers[topology.landmarks][list(OUTER_EYE_CORNERS)]
     width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
     length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
-    most_off = 3.0  # factor between lengths on different faces
+    most_off = 3.0  # greatest factor between lengths on different faces
     is_like = (length < most_off * share * width) & (length * most_off > share * width)
     count = len(mesh.vertices)
     sides = sides_of(mesh.faces)
@@ -129,7 +129,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
 
 @cache
 def _built_in_topologies() -> tuple[Topology, ...]:
-    """The included topologies."""
+    """The included topologies, and that of the built-in head."""
     path = Path(__file__).parents[1] / "topologies.toml"
     rows = read_toml(path)["topology"]
     found = [read(Topology, row, path.name, error=AssetError) for row in rows]
@@ -139,7 +139,7 @@ def _built_in_topologies() -> tuple[Topology, ...]:
 
 
 def _own_topologies() -> Iterator[Topology]:
-    """The user's topologies; raises AssetError for an unusable file."""
+    """Read the user's topologies; an unusable file raises AssetError."""
     for path in sorted(topologies_folder().glob("*.json")):
         try:
             document = parsed_json(read_file(path, kind="topology", most=1))

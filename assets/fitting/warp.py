@@ -1,12 +1,12 @@
-"""Map one head to another: similarity by landmarks, thin-plate warp, nearest places.
+"""Map one head to another: similarity by landmarks, thin-plate warp, nearest points.
 
-The warp takes the built-in head's landmarks exactly to those of another head, and bends the space
-in between as little as possible. The nearest point of the warped skin then gives depth of bone,
-weights and texture coordinates.
+The warp moves the landmarks of the built-in head exactly to those of another head, and bends the
+space between them as little as possible. For a vertex of the other head, the nearest point on the
+warped skin then gives depth of bone, weights and texture coordinates.
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop", section 4 (landmarks carry a head model
-to another head by scattered data interpolation, here the biharmonic kernel r); Umeyama 1991
-(similarity between point sets).
+to another head by interpolation of scattered data; the biharmonic kernel r is used here). Umeyama
+1991 (similarity between point sets).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ...geometry.arrays import Floats64, Integers32
 
 @dataclass(frozen=True, eq=False)
 class Similarity:
-    """x -> scale * rotation x + shift."""
+    """The map x -> scale * rotation x + shift; the rotation may also mirror."""
 
     scale: float
     rotation: Floats64  # (3, 3)
@@ -37,9 +37,9 @@ class Similarity:
 
     @classmethod
     def between(cls, source: Floats64, target: Floats64) -> Similarity:
-        """The similarity that moves `source` nearest to `target`, both (n, 3).
+        """Find the similarity that moves `source` closest to `target`, both (n, 3).
 
-        It mirrors if `target` is the mirror image of `source`.
+        If `target` is a mirror image of `source`, the similarity mirrors.
         """
         middle = source.mean(axis=0)
         wanted = target.mean(axis=0)
@@ -62,28 +62,28 @@ class Similarity:
         return Similarity(1.0 / self.scale, self.rotation.T, -back @ self.shift)
 
     def points(self, points: npt.ArrayLike) -> Floats64:
-        """Move points, shape (..., 3)."""
+        """Map points, (..., 3)."""
         return self.vectors(points) + self.shift
 
     def vectors(self, vectors: npt.ArrayLike) -> Floats64:
-        """Turn and scale displacements, shape (..., 3)."""
+        """Rotate and scale displacements, (..., 3)."""
         return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
 
 
 class ThinPlateSpline:
-    """The smoothest deformation of space that moves some points to others, or near them.
+    """The smoothest deformation of space that moves given points onto, or close to, other points.
 
-    It is a weighted sum of distances from the points, and a linear map.
-    `scipy.interpolate.RBFInterpolator` with the kernel "linear" gives the same, but takes several
-    times as long.
+    It is the sum of an affine map and of weighted distances from the given points. The class
+    `scipy.interpolate.RBFInterpolator` with the kernel "linear" computes the same, several times
+    slower.
     """
 
     def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:
-        """Fit the deformation from `source` to `target`, both (n, 3), not in one plane.
+        """Fit the deformation from `source` to `target`, both (n, 3).
 
-        Of equal points in `source`, the first counts. give: smoothing, one number or (n,) [unit of
-        `source`]; where it is larger, points may miss their targets by more. Raises LinAlgError for
-        points in a plane.
+        Of equal points in `source`, the first counts. give: smoothing, a number or (n,) [unit of
+        `source`]; with more smoothing, points may miss their targets by more. If all points lie in
+        one plane, raises LinAlgError.
         """
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
         self._source = np.asarray(source[first], dtype=np.float64)
@@ -105,15 +105,15 @@ class ThinPlateSpline:
             raise np.linalg.LinAlgError("the points lie in a plane")
 
     def points(self, points: npt.ArrayLike) -> Floats64:
-        """Move points (n, 3)."""
+        """Deform points (n, 3)."""
         places = np.asarray(points, dtype=np.float64)
-        at_once = 128  # points whose rows fit into the caches
+        at_once = 128  # points whose rows fit into the processor's cache
         parts = range(0, len(places), at_once)
         moved = [self._rows(places[k : k + at_once]) @ self._weights for k in parts]
         return np.concatenate([np.empty((0, 3)), *moved])
 
     def _rows(self, places: Floats64) -> Floats64:
-        """The factors of the weights at places (n, 3), shape (n, count of points + 4)."""
+        """The basis functions at points (n, 3), of shape (n, number of given points + 4)."""
         count = len(self._source)
         rows = np.empty((len(places), count + 4))
         np.negative(distances_between(places, self._source), out=rows[:, :count])
@@ -125,9 +125,10 @@ class ThinPlateSpline:
 def nearest_on(
     points: Floats64, normals: Floats64, vertices: Floats64, faces: Integers32
 ) -> SurfacePoints:
-    """Nearest places of points (n, 3) on a mesh; surfaces with opposite normals count as farther.
+    """Find the nearest points of a mesh for points (n, 3) with normals (n, 3).
 
-    So points of the lower lip find the lower lip even if the upper lip is nearer.
+    Surfaces with opposite normals count as farther, so points of the lower lip find the lower lip
+    even if the upper lip is nearer.
     """
-    wrong_side_distance = 12.0  # [mm] added to the distance of a surface with an opposite normal
+    wrong_side_distance = 12.0  # [mm] added to the distance of surfaces with opposite normals
     return closest_points(points, vertices, faces, normals, wrong_side_distance)
