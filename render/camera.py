@@ -125,7 +125,7 @@ class OrbitCamera:
         self.field_of_view = field_of_view
 
     def axes(self) -> tuple[Floats64, Floats64, Floats64]:
-        """Unit vectors in the world, each (3,): right, up, and from the target to the camera."""
+        """Return unit vectors in the world, each (3,): right, up, and from target to camera."""
         yaw = math.radians(self.yaw)
         pitch = math.radians(self.pitch)
         sine = math.sin(yaw)
@@ -142,7 +142,7 @@ class OrbitCamera:
         return self.target + self.distance * self.axes()[2]
 
     def view_matrix(self) -> Matrix44:
-        """The matrix from the world to view space (x right, y up, z to the viewer)."""
+        """Return the matrix from the world to view space (x right, y up, z to the viewer)."""
         axes = np.stack(self.axes())
         matrix = np.eye(4)
         matrix[:3, :3] = axes.T
@@ -150,24 +150,24 @@ class OrbitCamera:
         return Matrix44(matrix)
 
     def projection_matrix(self, aspect: float) -> Matrix44:
-        """The matrix from view space to clip space; aspect: width / height of the frame."""
+        """Return the matrix from view space to clip space; aspect: width / height of the frame."""
         near, far = self._depth_range()
         degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
     def focal(self, aspect: float, height: float) -> float:
-        """Focal length [pixels] for a frame of some aspect and height [pixels]."""
+        """Return the focal length [pixels] for a frame of some aspect and height [pixels]."""
         return 0.5 * height / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
-        """Half the height of the frame at distance 1 from the camera."""
+        """Return half the height of the frame at distance 1 from the camera."""
         if not aspect > 0.0:
             raise ValueError(f"aspect is {aspect}; it must be positive (width / height)")
         half_height = math.tan(math.radians(0.5 * self.field_of_view))
         return half_height * max(1.0, self.narrowest_aspect / aspect)
 
     def _depth_range(self) -> tuple[float, float]:
-        """Distances of the clipping planes, close to the scene for the most precise depths."""
+        """Return distances of the clipping planes, close to the scene for precise depths."""
         depth = float(np.dot(self.eye - self.scene_centre, self.axes()[2]))
         reach = 3.2 * self.scene_radius  # shoulders lie outside the framed scene
         near = max(depth - reach, 0.01 * self.scene_radius)

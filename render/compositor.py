@@ -29,7 +29,7 @@ class Detail:
     scale: float = 1.0
 
     def scaled(self, size: tuple[int, int]) -> tuple[int, int]:
-        """The scene's width and height in a window of `size` pixels."""
+        """Return the scene's width and height in a window of `size` pixels."""
         return max(round(self.scale * size[0]), 1), max(round(self.scale * size[1]), 1)
 
 
@@ -81,7 +81,7 @@ class Compositor:
         gl.scissor = None
 
     def _smoother_of(self, size: tuple[int, int]) -> EdgeSmoother:
-        """The smoother for scenes of some size; the last smoother is kept."""
+        """Return the smoother for scenes of some size; the last smoother is kept."""
         if self._smoother is None or self._smoother.size != size:
             self._smoother = EdgeSmoother(self._gl, size)
         return self._smoother
@@ -118,5 +118,5 @@ class Compositor:
         self._gl.scissor = None
 
     def read(self) -> bytes:
-        """The pixels, bottom row first, three bytes each."""
+        """Return the pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))

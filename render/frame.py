@@ -157,7 +157,7 @@ class Skin:
             )
 
     def shown_maps(self, style: Style) -> dict[BumpMap, float]:
-        """The maps that tilt normals in a style, each with its strength, 0 to 1."""
+        """Return the maps that tilt normals in a style, each with its strength, 0 to 1."""
         shown = {}
         if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
             shown[self.maps.bumps] = style.bumps

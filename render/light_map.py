@@ -84,7 +84,7 @@ class LightMap:
 
 
 def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
-    """Directions of a map's texels: unit vectors (H, W, 3), x right, y up, z to the viewer."""
+    """Return directions of a map's texels: unit vectors (H, W, 3), z to the viewer, y up."""
     elevation = np.pi * (0.5 - (np.arange(rows) + 0.5) / rows)[:, None]
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5) + np.radians(turn)
     across = np.cos(elevation)
@@ -93,13 +93,13 @@ def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
 
 
 def _solid_angles(rows: int, columns: int) -> Floats64:
-    """Solid angle of a texel in each row [sr], (H,)."""
+    """Return the solid angle of a texel in each row [sr], (H,)."""
     edges = np.sin(np.linspace(0.5 * np.pi, -0.5 * np.pi, rows + 1))
     return np.asarray(-np.diff(edges) * 2.0 * np.pi / columns)
 
 
 def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats64, Floats64]:
-    """The direction of the key light (3,), and the part of each texel's light in it (n, 3).
+    """Choose the key light: its direction (3,), and its part of each texel's light (n, 3).
 
     Light from the front is preferred: a sun behind the head is left to the smooth light.
 
@@ -141,7 +141,7 @@ def _three(values: Floats64) -> tuple[float, float, float]:
 
 
 def _clouds() -> Floats64:
-    """An overcast sky and a sun; the zenith is three times as bright as the horizon (CIE 1955)."""
+    """Paint a sun and an overcast sky, three times as bright at the zenith (CIE 1955)."""
     away = directions(64, 128)
     height = away[..., 1]
     sky = (1.0 + 2.0 * np.maximum(height, 0.0)) / 3.0
@@ -151,7 +151,7 @@ def _clouds() -> Floats64:
 
 
 def _room() -> Floats64:
-    """A room with light walls, a window at the viewer's left, and a lamp at the right."""
+    """Paint a room with light walls, a window at the viewer's left, and a lamp at the right."""
     away = directions(64, 128)
     height = away[..., 1:2]
     walls = np.where(height > 0.6, [0.24, 0.23, 0.21], [0.17, 0.155, 0.135])
@@ -164,7 +164,7 @@ def _room() -> Floats64:
 
 
 def _street() -> Floats64:
-    """A street in the evening: a blue sky, a lamp above, shop windows, and two signs."""
+    """Paint a street in the evening: a blue sky, a lamp above, shop windows, and two signs."""
     away = directions(64, 128)
     height = away[..., 1:2]
     sky = np.array([0.07, 0.10, 0.19]) + 0.10 * np.exp(-5.0 * np.abs(height)) * [1.6, 0.9, 0.6]
@@ -181,7 +181,7 @@ def _street() -> Floats64:
 
 
 def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
-    """Gaussian weights of texels at some distances, (n, n); each row has the sum 1.
+    """Return Gaussian weights of texels at some distances, (n, n); each row has the sum 1.
 
     distances: [texels], (n, n). deviation: standard deviation [texels].
     """
@@ -190,7 +190,7 @@ def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
 
 
 def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> Floats64:
-    """A Gaussian spot on a map, (H, W), with the maximum 1.
+    """Paint a Gaussian spot on a map, (H, W), with the maximum 1.
 
     away: directions of the texels, (H, W, 3). width: standard deviation [deg].
     """
@@ -204,7 +204,7 @@ def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> 
 def _pane(
     away: Floats64, azimuths: tuple[float, float], elevations: tuple[float, float]
 ) -> Floats64:
-    """A rectangle on a map, (H, W): 1 between some angles [deg], 0 outside."""
+    """Paint a rectangle on a map, (H, W): 1 between some angles [deg], 0 outside."""
     azimuth = np.degrees(np.arctan2(away[..., 0], -away[..., 2]))
     elevation = np.degrees(np.arcsin(away[..., 1]))
     across = (azimuth >= azimuths[0]) & (azimuth <= azimuths[1])

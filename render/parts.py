@@ -123,7 +123,7 @@ class PartBuffers:
         self._gl.disable(moderngl.CULL_FACE)
 
     def layer_count(self, view: PlacedView) -> int:
-        """Number of layers of the part's shells in a view."""
+        """Return the number of layers of the part's shells in a view."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
         return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
@@ -146,7 +146,7 @@ def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, i
 
 
 def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
-    """Relative width of three-sided strands at each vertex, (n, 1): 0 at tips, else 1.
+    """Return relative widths of three-sided strands at vertices, (n, 1): 0 at tips, else 1.
 
     At a tip three triangles and three edges meet; at an open end four edges meet.
     """
@@ -170,7 +170,7 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """The part with the number of the background, because its edges are already smooth."""
+        """Return the part with the background's number, because its edges are already smooth."""
         return self._replace(number=0)
 
     @property

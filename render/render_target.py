@@ -80,11 +80,11 @@ class RenderTarget:
         self._gl.scissor = part
 
     def read(self, components: int = 3) -> bytes:
-        """The pixels of the frame, bottom row first; components: bytes per pixel, 3 or 4."""
+        """Return the pixels of the frame, bottom row first; components: bytes per pixel, 3 or 4."""
         return bytes(self.frame.read(components=components, alignment=1))
 
     def read_area(self, area: Rectangle) -> tuple[Unsigned8, Unsigned8]:
-        """Colours and surfaces of an area, bottom row first, both (height, width, 4), uint8."""
+        """Return colours and surfaces of an area, bottom row first, both (H, W, 4), uint8."""
         shape = area[3], area[2], 4
         colours = self.frame.read(viewport=area, components=4)
         surfaces = self._numbered.read(viewport=area, components=4)

@@ -378,7 +378,7 @@ class Renderer:
 
 
 def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]:
-    """The kind of a part, and the defines of the opening through which light reaches it."""
+    """Return the kind of a part, and the defines of the opening that lets light in."""
     kind = placed.buffers.kind
     opening = placed.part.opening
     if kind != "RIGID" or opening is None or not style.skin_maps:
@@ -387,7 +387,7 @@ def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]
 
 
 def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:
-    """Pairs: a share of the triangles, and the maps with which it is drawn.
+    """Return pairs of a share of the triangles, and the maps with which it is drawn.
 
     Triangles that are coloured by values are drawn together, because values have their order.
     """

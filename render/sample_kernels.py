@@ -195,13 +195,13 @@ def _see_side(
 
 @njit
 def _corner(corners: Floats64, vertex: int) -> _Corner:
-    """A row of `corners` as a tuple; a new array would take longer than all that follows."""
+    """Return a row of `corners` as a tuple; an array would take longer than all that follows."""
     return corners[vertex, 0], corners[vertex, 1], corners[vertex, 2], corners[vertex, 3]
 
 
 @njit
 def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
-    """Twice the area of a triangle in front of the camera; negative if its back is visible."""
+    """Return twice the area of a triangle before the camera; negative if its back shows."""
     ax, ay = a[0] / a[3], a[1] / a[3]
     abx, aby = b[0] / b[3] - ax, b[1] / b[3] - ay
     acx, acy = c[0] / c[3] - ax, c[1] / c[3] - ay
@@ -212,7 +212,7 @@ def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
 def _span(
     a: float, b: float, c: float, a_depth: float, b_depth: float, c_depth: float, count: int
 ) -> tuple[int, int]:
-    """The pixels along an axis that a triangle may touch: the first, and one past the last.
+    """Return the pixels along an axis that a triangle may touch: first, and one past the last.
 
     a, b, c: coordinates of the corners on this axis, times their last columns. count: number of
     pixels.
@@ -237,7 +237,7 @@ def _has_any(before: Integers32, left: int, right: int, bottom: int, top: int) -
 
 @njit
 def _edge(a: _Corner, b: _Corner) -> _Linear:
-    """The edge function from a to b, which is 0 on the edge; from b to a it is exactly negated."""
+    """Return the edge function from a to b, 0 on the edge; from b to a it is exactly negated."""
     x = a[1] * b[3] - b[1] * a[3]
     y = a[3] * b[0] - b[3] * a[0]
     return x, y, a[0] * b[1] - b[0] * a[1]
@@ -251,7 +251,7 @@ def _at(edge: _Linear, x: float, y: float) -> float:
 
 @njit
 def _plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: float) -> _Linear:
-    """The depth on a triangle as a linear function of x and y; scale: 1 / its volume."""
+    """Return the depth on a triangle as a linear function of x and y; scale: 1 / its volume."""
     x = y = rest = 0.0
     for k in range(3):
         depth = scale * corners[k][2]
@@ -307,7 +307,7 @@ def _number(
     one: float,
     two: float,
 ) -> float:
-    """The surface number (see surface_number.glsl); negative where there is no surface.
+    """Return the surface number (surface_number.glsl); negative where there is no surface.
 
     one, two: interpolated `values` of `see`.
     """

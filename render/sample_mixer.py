@@ -26,7 +26,7 @@ class Mixer(Protocol):
     target: RenderTarget
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
+        """Smooth the edges of drawn surfaces; areas: rectangles that contain all of them."""
 
 
 class SampleMixer:
@@ -55,7 +55,7 @@ class SampleMixer:
         return self._gl.vertex_array(program, [])
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
+        """Smooth the edges of drawn surfaces; areas: rectangles that contain all of them."""
         gl = self._gl
         area = around(areas)
         bands = _bands(areas)
@@ -98,7 +98,7 @@ class SampleMixer:
 
 
 def _bands(areas: Sequence[Rectangle]) -> list[Rectangle]:
-    """Horizontal bands that contain all areas, each as wide as the areas in it.
+    """Return horizontal bands that contain all areas, each as wide as the areas in it.
 
     So wide shoulders do not widen the bands of the head.
     """

@@ -87,7 +87,7 @@ class ShadowMap:
 
 
 def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
-    """The matrix from view space to the light's clip space; basis: see `_basis`."""
+    """Return the matrix from view space to the light's clip space; basis: see `_basis`."""
     camera = view.camera
     centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
     matrix = np.eye(4)

@@ -43,7 +43,7 @@ class SoftwareMixer:
         self.target = target
 
     def mix(self, drawn: Drawn, view: PlacedView, areas: Sequence[Rectangle]) -> None:
-        """Smooth the edges of surfaces that were drawn in a view; areas: contain all of them."""
+        """Smooth the edges of drawn surfaces; areas: rectangles that contain all of them."""
         area = around(areas)
         colours, surfaces = self.target.read_area(area)
         pixels = find_edges(surfaces, *view.depth_tolerance)
@@ -61,7 +61,7 @@ class SoftwareMixer:
 
 
 def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
-    """The matrix for row vectors from clip space to pixels of an area and depths, (4, 4)."""
+    """Return the matrix for row vectors from clip space to an area's pixels and depths, (4, 4)."""
     left, bottom, width, height = view.viewport
     matrix = np.diag([0.5 * width, 0.5 * height, 0.5, 1.0])
     matrix[3] = 0.5 * width + left - area[0], 0.5 * height + bottom - area[1], 0.5, 1.0
@@ -69,7 +69,7 @@ def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
 
 
 def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
-    """All surfaces that samples may see, in the order of coverage.py."""
+    """Yield all surfaces that samples may see, in the order of coverage.py."""
     if drawn.skin is not None:
         yield _of_skin(drawn, drawn.skin, view)
     for each in drawn.parts:
@@ -80,7 +80,7 @@ def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
 
 
 def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
-    """Both sides of the skin."""
+    """Return both sides of the skin."""
     mesh = skin.stream.mesh
     rows = mesh.vertices
     values = np.zeros((len(rows), 2))
@@ -95,7 +95,7 @@ def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
 
 
 def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
-    """A solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
+    """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
     places = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
     clip = _moved(places, view.projection)
     if cut is not None:
@@ -110,7 +110,7 @@ def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Sur
 
 
 def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
-    """The outline of short hair; see coverage.glsl."""
+    """Return the outline of short hair; see coverage.glsl."""
     striation = placed.part.part.striation
     assert striation is not None  # all short hair has it
     layers = placed.buffers.layer_count(view)

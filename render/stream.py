@@ -39,7 +39,7 @@ _ATTRIBUTES = (
 
 
 def _layout(count: int) -> tuple[str, ...]:
-    """The format of the first `count` attributes of a vertex, and their names."""
+    """Return the format of the first `count` attributes of a vertex, and their names."""
     formats, names = zip(*_ATTRIBUTES[:count], strict=True)
     return " ".join(formats), *names
 

@@ -18,7 +18,7 @@ Colour = tuple[float, float, float]
 
 
 class Shading(Enum):
-    """The elements for which light is computed."""
+    """The elements (triangles, vertices or pixels) for which light is computed."""
 
     FLAT = "flat"  # triangles, with geometric normals, so that every facet shows
     GOURAUD = "gouraud"  # vertices; colours are interpolated, as in the paper's pictures

@@ -193,7 +193,7 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
 
 
 def _environment() -> dict[str, str]:
-    """The environment variables by which glcontext chooses device and libraries."""
+    """Return the environment variables by which glcontext chooses device and libraries."""
     return {name: value for name, value in os.environ.items() if name.startswith("GLCONTEXT_")}
 
 
@@ -238,7 +238,7 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def possible_samples(gl: moderngl.Context, samples: int) -> int:
-    """The greatest power of two up to `samples` that the driver supports, or 0 if less than 2."""
+    """Return the greatest power of two up to `samples` that the driver supports, else 0."""
     if samples < 0:
         raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
     # The limits of colour textures and of all other attachments may differ.

@@ -138,14 +138,14 @@ class BumpMap(_Mipmaps):
 
 
 def _values() -> Floats32:
-    """Linear light of the 256 sRGB bytes, then 256 equal steps from 0 to 1, (512,)."""
+    """Return linear light of the 256 sRGB bytes, then 256 equal steps from 0 to 1, (512,)."""
     lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
     shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
     return np.concatenate([lights, shares])
 
 
 def _lit_texels(image: Image, occlusion: Image) -> Image:
-    """Square roots of light and of ambient occlusion, (H, W, 4); occlusion: (H, W) or (1, 1)."""
+    """Return roots of light and of occlusion as bytes, (H, W, 4); occlusion: (H, W) or (1, 1)."""
     from .texture_kernels import write_roots  # here, because numba takes long to import
 
     texels = np.empty((*image.shape[:2], 4), np.uint8)
@@ -169,12 +169,12 @@ def _first_halved(image: Image, occlusion: Image) -> Floats32:
 
 
 def _roots(values: Floats32) -> Image:
-    """Square roots of values from 0 to 1, as bytes."""
+    """Return square roots of values from 0 to 1, as bytes."""
     return np.rint(255.0 * np.sqrt(values)).astype(np.uint8)
 
 
 def _halved(values: Floats32) -> Floats32:
-    """Means of 2 x 2 values, (H, W, C) -> (H // 2, W // 2, C).
+    """Average blocks of 2 x 2 values, (H, W, C) -> (H // 2, W // 2, C).
 
     An odd last row or column is left out. A single row or column is kept.
     """
@@ -192,7 +192,7 @@ def _halved(values: Floats32) -> Floats32:
 
 
 def _median_redness(image: Image) -> float:
-    """The median ratio of red to green light of an image (H, W, 3)."""
+    """Return the median ratio of red to green light of an image (H, W, 3)."""
     every = max(1, image.shape[0] * image.shape[1] // _SAMPLED_TEXELS)
     light = to_linear(image.reshape(-1, 3)[::every] / 255.0)
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))

@@ -101,7 +101,7 @@ def in_view(plane: Plane, view: PlacedView) -> Plane:
 
 
 def fade_defines(skin: Skin, view: PlacedView) -> tuple[str, ...]:
-    """The defines for a skin that fades; empty if the fading part is out of view.
+    """Return the defines for a skin that fades; empty if the fading part is out of view.
 
     MOUTH is added if the fading part may overlap the mouth on the screen.
     """

@@ -64,7 +64,7 @@ def action_units(scene: FaceScene) -> dict[str, float]:
 
 
 def by_number(unit: str) -> tuple[int, str]:
-    """The sort key of a unit: AU2 comes before AU12, and AU12 before AU12_left."""
+    """Return the sort key of a unit: AU2 comes before AU12, and AU12 before AU12_left."""
     number, _, side = unit.removeprefix("AU").partition("_")
     return int(number), side
 

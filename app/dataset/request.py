@@ -76,7 +76,7 @@ def request_of(
     degrade: bool = False,
     shards: int | None = None,
 ) -> SetRequest:
-    """Make the request of command-line options; if they do not fit together, raise UserError."""
+    """Make a request from command-line options; if these do not fit together, raise UserError."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)

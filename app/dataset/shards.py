@@ -106,7 +106,7 @@ def _add(tar: tarfile.TarFile, path: Path) -> int:
 
 
 def _files_in(file: IO[bytes]) -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of sample files in a tar file, from its present position."""
+    """Yield name and content of the sample files in an open tar file, from its position on."""
     with tarfile.open(fileobj=file, mode="r:") as tar:
         for member in tar:
             content = tar.extractfile(member)

@@ -51,7 +51,7 @@ class Glb:
         self._zeros: dict[int, int] = {}
 
     def data(self) -> bytes:
-        """The binary chunk so far."""
+        """Return the binary chunk so far."""
         return bytes(self._numbers)
 
     def add(self, kind: str, item: dict[str, Any]) -> int:

@@ -42,7 +42,7 @@ class PlayedTake:
 
 
 def played_take(scene: FaceScene, script: Script) -> PlayedTake:
-    """Play a take on a face; raises UserError if the face lacks one of its controls."""
+    """Play a take on a face; a control that the face lacks raises UserError."""
     script.check(scene.limits)
     moved = scene.simulation.controls
     times = []

@@ -66,7 +66,7 @@ def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling 
 
 
 def _smooth(points: Floats64) -> Floats64:
-    """Points (33, 3) of a curve without overshoot through points (n, 3)."""
+    """Return points (33, 3) of a curve without overshoot through points (n, 3)."""
     place_count = 33
     lengths = arc_lengths(points)
     curve = scipy.interpolate.PchipInterpolator(lengths, points)
@@ -76,7 +76,7 @@ def _smooth(points: Floats64) -> Floats64:
 def _filling(
     vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
 ) -> Integers:
-    """The triangles that fill an opening, if they form a polygon with all corners on its edge.
+    """Find the triangles that fill an opening as a polygon with all corners on its edge.
 
     All points are in the face space [mm], whose z axis points to the viewer.
 

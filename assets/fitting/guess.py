@@ -95,7 +95,7 @@ def placing(known: Known) -> Similarity:
 
 
 def _laid(known: Known) -> tuple[Similarity, Floats64]:
-    """The similarity from known landmarks to the built-in ones, and their errors [mm], (n,)."""
+    """Find the similarity from known landmarks to the built-in ones, and errors [mm], (n,)."""
     head = load("head")
     numbers = sorted(known)
     own = head.vertices[head.landmarks[numbers]]
@@ -107,7 +107,7 @@ def _laid(known: Known) -> tuple[Similarity, Floats64]:
 
 
 def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integers32:
-    """The triangles (n, 3) of the skin around some points, turned to face outward.
+    """Find the triangles (n, 3) of the skin around some points, and turn them outward.
 
     The skin is the piece of the mesh under most points; eyeballs, teeth and hair are left out.
     vertices, given: in the face space [mm], (V, 3) and (m, 3).
@@ -126,7 +126,7 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
 
 
 def _around_landmarks(head: Head) -> Integers32:
-    """Numbers of at most 300 or so vertices near the landmarks of a head, without the landmarks."""
+    """Choose 300 to 600 vertices near the landmarks of a head; leave out the landmarks."""
     reach = 30.0  # [mm] around landmarks, within which the built-in face is fitted to the mesh
     near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
     near[head.landmarks] = False
@@ -138,7 +138,7 @@ def _around_landmarks(head: Head) -> Integers32:
 def _feet(
     laid: Floats64, head: Head, chosen: Integers32, vertices: Floats64, faces: Integers32
 ) -> Floats64:
-    """The nearest points (n, 3), with similar normals, on a mesh for n vertices of the warped head.
+    """Find, for n vertices of the warped head, the nearest points of a mesh, (n, 3).
 
     laid: vertices of the warped head. chosen: numbers of the n vertices.
     """
@@ -147,13 +147,13 @@ def _feet(
 
 
 def centred(vertices: Floats64, radius: float) -> Similarity:
-    """The similarity that moves a mesh (V, 3) to the origin and scales it to `radius`."""
+    """Return the similarity that moves a mesh (V, 3) to the origin and scales it to `radius`."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
     return Similarity(scale, np.eye(3), -scale * middle)
 
 
 def axes_turned() -> list[Floats64]:
-    """The 24 rotations (3, 3) that map coordinate axes to coordinate axes, the identity first."""
+    """Return the 24 rotations (3, 3) that map axes to axes, the identity first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))

@@ -99,7 +99,7 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> Floats32 | None:
-        """How the skin fades at the neck, (V, 2), see `neck_fade`; None if no edge is there."""
+        """Return the result of `neck_fade`, (V, 2), which says how the skin fades at the neck."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 
@@ -176,7 +176,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
 
     def marks_of(parted: Mesh) -> Marks:
-        """The known landmarks, those of the inner lips moved to the own one of two parted lips."""
+        """Return the known landmarks; those of parted inner lips get vertices of the right lip."""
         numbers = known.landmarks
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
@@ -264,7 +264,7 @@ def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
 
 
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
-    """The vertices (n, 3) of each piece of a mesh except the skin."""
+    """Return the vertices (n, 3) of each piece of a mesh except the skin."""
     piece = pieces_of(faces, len(vertices))
     own = piece[skin.file_vertices[0]]
     groups = vertices_of_pieces(piece, faces)

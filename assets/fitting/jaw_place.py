@@ -18,7 +18,7 @@ USUAL_WIDTH = 136.0  # [mm] between landmarks 0 and 16; other lengths hold for t
 
 
 def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> Floats64 | None:
-    """Centres of the right and the left condyle [mm], (2, 3); None if no ear is found.
+    """Find the centres of the right and the left condyle [mm], (2, 3); None if no ear is found.
 
     vertices: in the face space [mm], (V, 3). faces: (F, 3). landmarks: points [mm], (68, 3).
     """
@@ -70,14 +70,14 @@ def opening_as_people(
 
 
 def _spread(places: Floats64, faces: Integers32) -> Floats64:
-    """Points on triangles, (n, 3), so dense that every section contains some."""
+    """Return points on triangles, (n, 3), so dense that every section contains some."""
     shares = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
     corners = places[faces]
     return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in shares])
 
 
 def _ear(points: Floats64) -> tuple[float, float] | None:
-    """Height of the left ear's centre, and z of its front, relative to the eyes [mm].
+    """Find the height of the left ear's centre, and z of its front, relative to the eyes [mm].
 
     points: relative to the eyes [mm], (n, 3). None if fewer than five sections show an ear.
     """
@@ -96,7 +96,7 @@ def _ear(points: Floats64) -> tuple[float, float] | None:
 
 
 def _outline(section: Floats64, depths: Floats64) -> Floats64:
-    """Greatest x of a section's points at each depth [mm], (n,); 0 behind the end of the mesh."""
+    """Return the greatest x of a section at each depth [mm], (n,); 0 behind the mesh."""
     reach = np.full(len(depths), -np.inf)
     row = np.round((depths[0] - section[:, 2]) / 2.0).astype(np.int64)
     inside = (row >= 0) & (row < len(depths))
@@ -109,7 +109,7 @@ def _outline(section: Floats64, depths: Floats64) -> Floats64:
 
 
 def _front(reach: Floats64, depths: Floats64) -> float:
-    """Depth of an ear's front [mm], where the outline jumps outward; NaN if there is no ear."""
+    """Find the depth of an ear's front [mm], where the outline jumps outward; NaN without ear."""
     for row in range(4, len(depths) - 12):
         leap = reach[row] - reach[row - 4]
         stands_out = reach[row : row + 12].max() - reach[row - 4]

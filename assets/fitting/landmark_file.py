@@ -165,7 +165,7 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 
 
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
-    """The vertices nearest to points, (68,); a point off the mesh raises AssetError."""
+    """Find the vertices nearest to points, (68,); a point off the mesh raises AssetError."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
     most_share = 0.05  # greatest distance from the mesh, relative to that of the outer eye corners
     outer_eye_corners = [36, 45]
@@ -189,13 +189,13 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
 
 
 def _triangles_at(points: Floats64, mesh: Mesh, faces: Integers32) -> tuple[Any, Floats64]:
-    """The triangles nearest to points (n, 3), and the distances, both (n,)."""
+    """Find the triangles nearest to points (n, 3), and the distances, both (n,)."""
     found = nearest_on(points, np.zeros_like(points), mesh.vertices, faces)
     return found.triangles, np.linalg.norm(found.interpolate(mesh.vertices) - points, axis=1)
 
 
 def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) -> Integers32:
-    """The vertices nearest to the points of landmarks (68, 3), (68,).
+    """Find the vertices (68,) that are nearest to the points of landmarks (68, 3).
 
     Where lips touch, the nearest vertex may belong to the other lip. So a landmark of an inner lip
     takes the nearest vertex of the same lip. A vertex belongs to the lip whose outer landmarks have
@@ -251,7 +251,7 @@ GROUPS = (
 
 
 def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
-    """The groups of landmarks in a wrong order; points, template: (68, 3) [mm].
+    """Return the groups of landmarks in a wrong order; points, template: (68, 3) [mm].
 
     In a closed mouth this test cannot separate the inner lips; `check_lips` does.
     """

@@ -93,7 +93,7 @@ class LikelyFace:
         self._move(Similarity(1.0 + float(growth), rotation, shift))
 
     def _planes(self, vertices: Floats64) -> tuple[Floats64, Floats64]:
-        """Equations for the weights and the motion: rows (n, modes + 7), and right sides (n,).
+        """Return equations for weights and motion: rows (n, modes + 7), and right sides (n,).
 
         They move the skin of the person onto planes at the nearest points of the mesh.
         """
@@ -130,7 +130,7 @@ class LikelyFace:
 
 
 def _motions(points: Floats64) -> Floats64:
-    """The Jacobian of points (n, 3) by shift (3), rotation (3) and scale (1), (3 n, 7)."""
+    """Return the Jacobian (3 n, 7) of points (n, 3) by shift (3), rotation (3) and scale (1)."""
     x, y, z = points.T
     none = np.zeros_like(x)
     turns = np.stack([none, z, -y, -z, none, x, y, -x, none], axis=1).reshape(-1, 3, 3)

@@ -27,7 +27,7 @@ OUTER_MIDDLES = (51, 57)  # landmarks on the outer borders of the upper and the 
 
 
 def lips_line(landmarks: Floats64) -> Floats64:
-    """The line between the lips, from the right to the left corner, (5, 3); landmarks: (68, 3)."""
+    """Return the line between the lips, from right to left, (5, 3); landmarks: (68, 3)."""
     return (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
 
 
@@ -154,7 +154,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """Vertex numbers of a path of edges along a line (n, 3); None if no path joins its ends."""
+    """Find a path of edges along a line (n, 3): vertex numbers; None if no path joins its ends."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
     edges = edges_of(mesh.faces)
@@ -171,7 +171,7 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
-    """The triangles at the inner vertices of a path, in one group for each side of the path."""
+    """Return the triangles at a path's inner vertices, in a group for each side of the path."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
     sides = np.sort(sides_of(faces[strip]), axis=1)
     owner = np.tile(np.arange(len(strip)), 3)
@@ -189,7 +189,7 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
 
 
 def _distances(points: Floats64, line: Floats64) -> Floats64:
-    """Distances (n,) of points (n, 3) from a polyline (m, 3)."""
+    """Return distances (n,) of points (n, 3) from a polyline (m, 3)."""
     place_count = 33  # points on each segment of the line
     steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
     places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)

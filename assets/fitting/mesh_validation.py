@@ -110,7 +110,7 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
 
 
 def vertices_of_pieces(piece: Integers32, faces: Integers32) -> list[Integers]:
-    """The vertex numbers of each piece of a mesh, in rising order; loose vertices are left out.
+    """Return the vertices of each piece of a mesh, in rising order, without loose vertices.
 
     piece: piece of each vertex, see `pieces_of`, (V,).
     """
@@ -190,7 +190,7 @@ def check_openings(skin: SkinPiece) -> None:
 
 
 def notes_of_shut_eyes(skin: SkinPiece) -> tuple[str, ...]:
-    """A line for the user that reports eyes that are shut at rest; empty if both are open."""
+    """Return a line for the user about eyes that are shut at rest; empty if both are open."""
     sides = [side for side in LID_PAIRS if _is_slit(skin, side)]
     if not sides:
         return ()
@@ -218,7 +218,7 @@ def _is_slit(skin: SkinPiece, side: str) -> bool:
 def _across_and_around(
     skin: SkinPiece, pair: tuple[int, int], corners: tuple[int, int]
 ) -> tuple[float, float]:
-    """Lengths [mm] of two paths along the skin between landmarks above and below an opening.
+    """Measure two paths along the skin between landmarks above and below an opening [mm].
 
     The first path is the shortest one. The second is the shortest path around a corner of the
     opening.

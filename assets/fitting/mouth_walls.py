@@ -60,7 +60,7 @@ def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> 
 
 
 def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
-    """Motions of the mandible to a half open and to a fully open mouth: matrices (4, 4).
+    """Return the mandible's motions to a half open and a fully open mouth: matrices (4, 4).
 
     axis: centres of the right and the left condyle [mm], (2, 3).
     """
@@ -114,7 +114,7 @@ def within_skin(
 
 
 def _mandible_shares(part: Part) -> ShareArray:
-    """The weight of the mandible's motion at each vertex of a part, 0 to 1, (n,)."""
+    """Return the weight of the mandible's motion at each vertex of a part, 0 to 1, (n,)."""
     if part.mandible_shares is not None:
         return part.mandible_shares
     return np.full(len(part.vertices), 1.0 if part.bone == "mandible" else 0.0)

@@ -7,7 +7,7 @@ from ..topology import boundary_loops
 
 
 def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Floats32 | None:
-    """Opacity of the skin, and distance in front of the neck, at each vertex, (V, 2).
+    """Compute opacity of the skin, and distance in front of the neck, at each vertex, (V, 2).
 
     The first column is the opacity: up to 0 along the neck's edge, and 1 or more from 25 mm (or
     less) above it. The second column is the smaller of two distances [mm]: in front of the neck,
@@ -46,7 +46,7 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
 
 
 def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers64:
-    """The order of triangles (F,) in which those that fade come last.
+    """Return the order of triangles (F,) in which those that fade come last.
 
     Skin is blended in this order, so that a chin behind a fading neck shows through.
     """

@@ -68,7 +68,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
 
 
 def _extent(points: Floats64) -> float:
-    """Distance between the corners of an eye [mm]; points: its landmarks, (6, 3)."""
+    """Return the distance between the corners of an eye [mm]; points: its landmarks, (6, 3)."""
     return float(np.linalg.norm(points[3] - points[0]))
 
 
@@ -86,7 +86,7 @@ def _behind_lids(
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: Floats64) -> Floats64:
-        """Errors of the sphere: gap to the lids in each sector, sideways shift, change of size."""
+        """Return errors of the sphere: gaps to the lids in sectors, sideways shift, growth."""
         size = radius * np.exp(values[3])
         gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
         gaps -= size + LID_CLEARANCE
@@ -107,7 +107,7 @@ def _behind_lids(
 
 
 def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
-    """Distance [mm] by which a sphere can move forward until it touches a point of the skin."""
+    """Return how far a sphere can move forward until it touches the skin (n, 3) [mm]."""
     away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)
     in_front = (away[:, 2] > 0.0) & (across < radius)
@@ -175,7 +175,7 @@ def place_parts(
 
 
 def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
-    """Find the similarity that moves the rigid parts of the mouth together behind the skin."""
+    """Find the similarity that moves all rigid parts of the mouth, as one body, behind the skin."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
     ]
@@ -199,7 +199,7 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
 
 
 def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple[float, float]:
-    """Motions of the upper and the lower teeth upward [mm], relative to a shut mouth.
+    """Return how far the upper and the lower teeth move up [mm], relative to a shut mouth.
 
     If a mouth is open at rest, each row of teeth moves with its lip. Otherwise shut teeth with much
     gum would show between the lips. landmarks: points [mm], (68, 3).
@@ -272,7 +272,7 @@ def with_eyelid_rims(
 
 
 def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
-    """Remove flesh from the corners of eyes with closed sockets, which skin of the head fills."""
+    """Remove the flesh of eyes whose sockets are closed by skin of the head."""
     middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
     most_radii = 2.0  # greatest distance of flesh from its eye, in radii of the eyeball
     stays = np.ones(len(part.faces), np.bool_)
@@ -289,7 +289,7 @@ def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
 
 
 def _edge_around(eye: Eye, vertices: Floats64, faces: Integers32) -> list[int]:
-    """Vertex numbers of the skin's edge around an eye, in the order of faces; [] for no edge."""
+    """Find the skin's edge around an eye: vertices in the order of faces; [] for no edge."""
     most_radii = 1.6  # greatest distance of the edge from the ball's centre, in radii
     reach = most_radii * eye.radius
     away = np.linalg.norm(vertices - eye.centre, axis=1)

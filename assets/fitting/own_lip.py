@@ -20,7 +20,7 @@ from .warp import nearest_on
 
 
 def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats64) -> SurfacePoints:
-    """Nearest points on the warped built-in skin for a skin's vertices [mm], as by `nearest_on`.
+    """Find, as `nearest_on` does, the nearest points on the warped built-in skin.
 
     No vertex of one lip gets a point of the other lip. warped: vertices of the built-in skin, (V,
     3). normals: unit normals of the skin's vertices.
@@ -39,7 +39,7 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
 
 
 def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
-    """For each vertex 1 on the upper lip, -1 on the lower lip, else 0; (V,)."""
+    """Return 1 for vertices of the upper lip, -1 for those of the lower lip, else 0; (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
     ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
     upper, lower = ways

@@ -40,7 +40,7 @@ def spread_uv(
     nearest: SurfacePoints,
     skin: tuple[Floats64, Floats64, Integers32],
 ) -> Floats32:
-    """Texture coordinates in the built-in texture for another head's vertices, (V, 2).
+    """Find texture coordinates in the built-in texture for another head's vertices, (V, 2).
 
     warped: vertices of the built-in skin after the warp [mm], (n, 3). nearest: foot of each vertex
     on this skin. skin: the other head's vertices (V, 3) [mm], unit normals (V, 3) and faces (F, 3).
@@ -117,7 +117,7 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
 
 
 def plain_skin(known: Head) -> tuple[Image, Image]:
-    """The built-in albedo and ambient occlusion without ears and nostrils.
+    """Return the built-in albedo and ambient occlusion without ears and nostrils.
 
     Ears and nostrils of another head lie elsewhere; its shape and the light show them. The package
     has both textures as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
@@ -147,7 +147,7 @@ class Layout:
 
 
 def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
-    """The texels that triangles cover in a texture of (height, width), and one texel around them.
+    """Find the texels that triangles cover in a texture of (height, width), and a margin of 1.
 
     If triangles cover the texture many times over, raises AssetError.
     """
@@ -161,7 +161,7 @@ def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
 
 
 def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
-    """The texels of a texture (H, W, C) at texture coordinates (n, 2), (n, C)."""
+    """Return the texels (n, C) of a texture (H, W, C) at texture coordinates (n, 2)."""
     height, width = picture.shape[:2]
     columns, rows = np.floor(uv * [width, -height] + [0.0, height]).astype(np.int64).T
     found: Unsigned8 = picture[rows.clip(0, height - 1), columns.clip(0, width - 1)]
@@ -216,7 +216,7 @@ def maps_in(
 
 
 def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
-    """Derivatives of the built-in layout by another layout, at each row of its `uv`, (U, 4).
+    """Return derivatives of the built-in layout by another layout, at rows of its `uv`, (U, 4).
 
     They are means over the surrounding triangles, weighted by area. Derivatives of single triangles
     jump at edges, which would break a furrow into pieces.
@@ -233,7 +233,7 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
 
 
 def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
-    """The texture of some triangles, and their layout in it; None if they have no texture.
+    """Return the texture of some triangles, and their layout; None if they have no texture.
 
     Several textures are put side by side into one. Triangles without a texture get the mean colour.
     faces: numbers of the triangles, (F,). turned: whether to reverse the corners of each triangle.

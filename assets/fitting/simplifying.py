@@ -74,7 +74,8 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
 def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
     """Simplify a skin to SIMPLIFIED triangles; returns vertices and faces.
 
-    The head keeps up to four fifths of them, or more if the body is small; the body gets the rest.
+    The head gets up to four fifths of these triangles, or more if the body is small. The body gets
+    the rest.
     is_head: flags of the skin's triangles, (F,).
     """
     body = skin.faces[~is_head]

@@ -81,7 +81,7 @@ class KnownHead:
 
 
 def topologies_folder() -> Path:
-    """The folder of the user's topologies, which need not exist."""
+    """Return the folder of the user's topologies, which need not exist."""
     return configuration_folder() / "topologies"
 
 
@@ -100,7 +100,7 @@ def recognised(mesh: Mesh) -> KnownHead | None:
 
 
 def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
-    """Vertex numbers and number of triangles of each piece, then of the whole mesh."""
+    """Yield vertices and number of triangles of each piece, then of the whole mesh."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
     for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
@@ -129,7 +129,7 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
 
 @cache
 def _built_in_topologies() -> tuple[Topology, ...]:
-    """The included topologies, and that of the built-in head."""
+    """Return the included topologies, and that of the built-in head."""
     path = Path(__file__).parents[1] / "topologies.toml"
     rows = read_toml(path)["topology"]
     found = [read(Topology, row, path.name, error=AssetError) for row in rows]

@@ -113,7 +113,7 @@ class ThinPlateSpline:
         return np.concatenate([np.empty((0, 3)), *moved])
 
     def _rows(self, places: Floats64) -> Floats64:
-        """The basis functions at points (n, 3), of shape (n, number of given points + 4)."""
+        """Evaluate the basis functions at points (n, 3); shape (n, number of given points + 4)."""
         count = len(self._source)
         rows = np.empty((len(places), count + 4))
         np.negative(distances_between(places, self._source), out=rows[:, :count])

@@ -79,7 +79,7 @@ def painted(brows: Brows, size: int) -> Floats32:
 
 
 def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
-    """Points of each hair from root to tip, x and y seen from the front [mm], (n, PARTS + 1, 2)."""
+    """Place n hairs: points from root to tip, seen from the front [mm], (n, PARTS + 1, 2)."""
     head = load("head")  # its brows give the height and the outer end
     inner, outer = head.vertices[head.landmarks[[22, 26]]]
     first = brows.inner
@@ -164,7 +164,7 @@ def _map() -> scipy.interpolate.RBFInterpolator:
 
 @lru_cache(maxsize=1)
 def stubble(size: int) -> Floats32:
-    """Fraction of each texel that stubble covers where a beard grows, 0 to 1, (size, size)."""
+    """Paint stubble: the fraction of each texel that it covers, 0 to 1, (size, size)."""
     random = np.random.default_rng(0).random((size, size), np.float32)
     hairs = scipy.ndimage.gaussian_filter(random, (1.4, 0.55))
     hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 0.6, 0.0, 2.0) / 2.0

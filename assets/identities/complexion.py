@@ -79,7 +79,7 @@ class _Tints:
 
 
 def typology_angle(light: npt.ArrayLike) -> Floats64:
-    """ITA [deg], (...), of linear sRGB light from 0 to 1, (..., 3), by L* and b* of CIE 1976."""
+    """Compute the ITA [deg], (...), of linear sRGB light, 0 to 1, (..., 3), by L* and b*."""
     # Rows Y and Z of the matrix from linear sRGB (D65) to CIE XYZ.
     to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
     relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
@@ -145,14 +145,14 @@ def recoloured(
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:
-    """The linear sRGB colour of a person's hair without grey, (3,); angle: ITA [deg]."""
+    """Return the linear sRGB colour of a person's hair without grey, (3,); angle: ITA [deg]."""
     hair = changes_of(_tints().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
 
 def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
-    """Opacity of painted hair, 0 to 1, (H, W), with a person's brows, lid lines and stubble."""
+    """Compute the opacity of a person's painted hair, brows, lid lines and stubble, (H, W)."""
     kept = tints.hair
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
@@ -171,7 +171,7 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
 
 @lru_cache(maxsize=1)
 def _shrunk_stubble(size: int, shrink: int) -> Floats32:
-    """Stubble of `stubble(size)`, averaged over blocks of `shrink` x `shrink` texels."""
+    """Average `stubble(size)` over blocks of `shrink` x `shrink` texels."""
     return shrunk(stubble(size), shrink)
 
 
@@ -218,14 +218,14 @@ def coloured(
 
 
 def _own_shape(person: Person) -> FineShape:
-    """The fine shape of the built-in head, with a person's larynx and sternomastoids."""
+    """Add a person's larynx and sternomastoids to the built-in head's fine shape."""
     known = load("head").fine_shape
     size = len(known.slopes)
     return with_reliefs(known, [larynx_of(person, size), *sternomastoids_of(person, size)])
 
 
 def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
-    """A person's wrinkles, with lid folds and lines; the smallest pictures show no lines."""
+    """Draw lid folds and lines into a person's wrinkles; the smallest pictures show no lines."""
     lines = person.identity.lines
     finest = 2  # largest `shrink` at which lines are at least one texel wide
     if lines is None or shrink > finest:
@@ -247,7 +247,7 @@ def _beside_light_skin(angle: float) -> Floats64:
 
 
 def _haired_segments(features: Features, behind: Floats32) -> Image:
-    """Segments of the built-in head's texels, (H, W), with a person's brows and hairline."""
+    """Change the built-in head's segments, (H, W), to a person's brows and hairline."""
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
@@ -272,7 +272,7 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
 
 @lru_cache(maxsize=2)
 def _texels_of(*segments: Segment) -> Integers64:
-    """Flat indices of the texels that belong to some segments of the built-in head, (n,)."""
+    """Return flat indices of the texels in some segments of the built-in head, (n,)."""
     places = np.flatnonzero(np.isin(load("head").segments, segments))
     places.flags.writeable = False
     return places
@@ -302,7 +302,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
-    """Distances of texels behind a person's hairline [mm], (H, W); halved where the top is bald."""
+    """Compute distances of texels behind a person's hairline [mm], (H, W); baldness halves them."""
     scalp = tints.scalp
     behind = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
     line = features.hairline
@@ -362,7 +362,7 @@ def _tints() -> _Tints:
 
 @lru_cache(maxsize=1)
 def _shrunk_tints(shrink: int) -> _Tints:
-    """The maps, averaged over blocks of `shrink` x `shrink` texels."""
+    """Average the maps over blocks of `shrink` x `shrink` texels."""
     whole = _tints()
     names = [each.name for each in fields(whole)]
     maps: dict[str, Any] = {
@@ -376,7 +376,7 @@ def _shrunk_tints(shrink: int) -> _Tints:
 
 @lru_cache(maxsize=2)
 def _occlusion(shrink: int) -> Image:
-    """Ambient occlusion of the built-in head, shrunk: open texels have 255, (H, W), uint8."""
+    """Shrink the ambient occlusion of the built-in head, (H, W), uint8; 255 is open."""
     light = load("head").ambient_occlusion
     found = np.rint(shrunk(light.astype(np.float32), shrink)).astype(np.uint8)
     found.flags.writeable = False
@@ -385,5 +385,5 @@ def _occlusion(shrink: int) -> Image:
 
 @lru_cache(maxsize=1)
 def _screen_bytes() -> Image:
-    """The sRGB bytes of linear light t * t, for LEVELS equal steps of t from 0 to 1, (LEVELS,)."""
+    """Return sRGB bytes of linear light t * t, for LEVELS equal steps of t from 0 to 1."""
     return np.rint(255.0 * to_screen(np.linspace(0.0, 1.0, LEVELS) ** 2)).astype(np.uint8)

@@ -113,7 +113,7 @@ def _eyeball(parts: Sequence[Part], eye: Eye) -> Part:
 
 
 def _aside(part: Part, eye: Eye) -> Floats64:
-    """Distance of each vertex from the eye's axis, in radii of the iris; infinite on the back."""
+    """Return distances of vertices from the eye's axis [iris radii], (n,); infinite on the back."""
     off = part.vertices - eye.centre
     radius = np.linalg.norm(off[:, :2], axis=1) / eye.iris_radius
     return np.where(off[:, 2] > 0.0, radius, np.inf)
@@ -137,7 +137,7 @@ def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
 
 
 def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:
-    """Lightness of an iris' fibres at each vertex, with a mean square of 1, (n,).
+    """Compute the lightness of an iris' fibres at each vertex, with a mean square of 1, (n,).
 
     Fibres are waves around the axis, which twist apart from the pupil to the edge. Both eyes of a
     person have equally rough irises, with different fibres.

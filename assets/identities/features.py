@@ -84,7 +84,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
 
 
 def _share_of_grey(years: float, angle: float, early: float) -> float:
-    """Fraction of grey in a person's hair, 0 to 0.95.
+    """Compute the fraction of grey in a person's hair, 0 to 0.95.
 
     Between 45 and 65 years the mean is 0.27. Persons with dark skin turn grey later (Panhard,
     Lozano, Loussouarn 2012, "Greying of the human hair", Br. J. Dermatology 167:865-873).

@@ -100,7 +100,7 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
 
 
 def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
-    """What lines add to the slopes and the depth of a region [bytes], (h, w, 3).
+    """Carve lines into a region; returns their slopes and depths [bytes], (h, w, 3).
 
     per_slope: reciprocal of the height between two texels that has the greatest slope [1/mm].
     """
@@ -125,7 +125,7 @@ def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
 
 @lru_cache(maxsize=2)
 def shared_map(shrink: int) -> Image:
-    """The built-in head's map of furrows, averaged over blocks of `shrink` x `shrink` texels."""
+    """Average the built-in map of furrows over blocks of `shrink` x `shrink` texels."""
     known = load("head").wrinkles.map
     found = np.rint(shrunk(known.astype(np.float32), shrink)).astype(np.uint8)
     found.flags.writeable = False
@@ -184,7 +184,7 @@ def _places(shrink: int) -> _Places:
 
 
 def _face(size: int) -> tuple[slice, slice, Floats64]:
-    """Rows and columns of the map that hold the face, and their texels' points [mm], (h, w, 3)."""
+    """Find the rows and columns of the map that hold the face, and points [mm], (h, w, 3)."""
     head = load("head")
     x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)
     is_face = ((z > 30.0) & (np.abs(x) < 75.0) & (y > -100.0) & (y < 85.0)).all(axis=1)

@@ -88,7 +88,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
-    """Strength of a line at each sample, 0 to 1, (s,); beside: distance from the midline [mm]."""
+    """Return a line's strength, 0 to 1, (s,); beside: distances from the midline [mm], (s,)."""
     reach = random.uniform(0.8, 1.25)
     match spread:
         case Spread.WHOLE:
@@ -147,7 +147,7 @@ def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Floats64:
-    """A random curve of mean 0 and standard deviation 1, (s,); length: mean wavelength [mm]."""
+    """Draw a random curve of mean 0 and deviation 1, (s,); length: mean wavelength [mm]."""
     waves = length / np.array([0.6, 1.0, 1.7])
     begins = random.uniform(0.0, 2.0 * np.pi, 3)
     shares = np.array([0.8, 0.5, 0.33])
@@ -155,5 +155,5 @@ def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Fl
 
 
 def _samples(reach: tuple[float, float]) -> Floats64:
-    """Coordinates of the samples along lines [mm], (s,)."""
+    """Return coordinates of the samples along lines [mm], (s,)."""
     return np.arange(reach[0], reach[1], STEP)

@@ -96,7 +96,7 @@ class Hairline:
     crown: float = 0.0
 
     def shift(self, size: int, rows: slice = slice(None)) -> Floats32:
-        """Distance behind the built-in hairline [mm], for `rows` of a (size, size) texture."""
+        """Compute distances behind the built-in hairline [mm], for `rows` of a (size, size) map."""
         across = np.linspace(-0.5, 0.5, size)
         up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
@@ -296,7 +296,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     height, width = behind.shape
 
     def far(places: Points) -> Floats64:
-        """Distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
+        """Return distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
         at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 

@@ -52,7 +52,7 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
 
 @lru_cache(maxsize=1)
 def _yielding() -> tuple[Floats32, Floats32]:
-    """The field `across` of wrinkles with the upper lids, and which vertices have folds, (V,).
+    """Return `across` of the wrinkles with upper lids, and which vertices have folds, (V,).
 
     Folds run along the lid, so their skin yields perpendicular to the lid's edge.
     """
@@ -123,12 +123,12 @@ class _About(NamedTuple):
 
 
 def _edge(vertices: Floats64, side: str) -> Floats64:
-    """The vertices of an upper lid's edge from the inner corner outward [mm], (POINTS, 3)."""
+    """Return the vertices of an upper lid's edge, from the inner corner [mm], (POINTS, 3)."""
     return vertices[load("head").rings[f"eye_2_{side}"][:POINTS]]
 
 
 def _shares(along: Floats64, derivative: int = 0) -> Floats64:
-    """Weights of the edge's vertices at positions along its curve, or derivatives, (n, POINTS).
+    """Return weights of the edge's vertices, or derivatives, along its curve, (n, POINTS).
 
     The curve is a smoothing spline that passes near the vertices. A curve through them would have
     corners, and so would the crease parallel to it.
@@ -145,7 +145,7 @@ def _shares(along: Floats64, derivative: int = 0) -> Floats64:
 
 
 def _nearest(places: Floats64, points: Floats64) -> Floats64:
-    """Positions along an edge's curve, 0 to 1, (n,), of the points nearest to some places (n, 3).
+    """Find the nearest points of an edge's curve for places (n, 3); returns positions 0 to 1.
 
     points: vertices of the edge [mm], (POINTS, 3).
     """

@@ -95,7 +95,7 @@ def falling_hair(
 
 
 def _slide(along: Floats64) -> Floats64:
-    """The argument `slide` of `_layers`, (n, m), for lengths along strands from roots [mm], (n, m).
+    """Return `slide` of `_layers`, (n, m), for lengths along strands from the roots [mm], (n, m).
 
     Hair rises at its parting, and shines where it lies flat. If it lay flat at the parting, the two
     halves would meet there in a hard edge, one side bright and the other dark.
@@ -118,7 +118,7 @@ def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats6
 
 
 def _reach(ways: Floats64, solid: Floats64) -> Floats64:
-    """Distances of the skin from the head's centre [mm], (n, m): a soft maximum over nearby points.
+    """Return distances of the skin from the head's centre [mm], (n, m), as a soft maximum.
 
     ways: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm], (k, 3).
     """
@@ -249,6 +249,6 @@ def _layers(
 
 
 def _along(places: Floats64) -> Floats64:
-    """Arc lengths of the points of strands from their roots [mm], (n, m, 3) -> (n, m)."""
+    """Return arc lengths of points of strands from the roots [mm], (n, m, 3) -> (n, m)."""
     steps = np.linalg.norm(np.diff(places, axis=1, prepend=places[:, :1]), axis=2)
     return np.asarray(steps.cumsum(axis=1))

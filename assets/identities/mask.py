@@ -95,7 +95,7 @@ def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) ->
 
 
 def _places(person: Person) -> tuple[Floats64, Floats64]:
-    """Cylinder coordinates of the sheet's vertices, both of SHAPE: angles [rad] and heights [mm].
+    """Return angles [rad] and heights [mm] of the sheet's vertices around an axis, both SHAPE.
 
     The axis of the cylinder is vertical; angle 0 points forward.
     """
@@ -114,7 +114,7 @@ def _places(person: Person) -> tuple[Floats64, Floats64]:
 
 
 def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats64) -> Floats64:
-    """Distances of the skin from the vertical axis below the sheet's vertices [mm], of SHAPE.
+    """Measure how far the skin under each vertex of the sheet lies from the axis [mm], SHAPE.
 
     middle: a point of the axis. turn, height: as `_places` returns them.
     """
@@ -137,7 +137,7 @@ def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats
 
 
 def _membrane(skin: Floats64) -> Floats64:
-    """Distances of a taut sheet from the axis [mm], of SHAPE.
+    """Compute a taut sheet's distances from the axis [mm], SHAPE.
 
     skin: distances of the skin from the axis [mm], of SHAPE. The upper edge and the sides of the
     sheet lie on the skin.
@@ -158,7 +158,7 @@ def _membrane(skin: Floats64) -> Floats64:
 
 
 def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
-    """Heights of three pleats [mm], and strengths of the dark creases between them, 0 to 1.
+    """Return heights of three pleats [mm], and strengths of the dark creases, 0 to 1.
 
     down: rows from 0 (top) to 1, (r, 1). aside: distances of columns from the middle, 0 to 1, (c,).
     Both results have the shape (r, c).
@@ -173,7 +173,7 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
 
 
 def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
-    """Weights of the mandible's motion at the sheet's vertices, (r, c).
+    """Return weights of the mandible's motion at the sheet's vertices, (r, c).
 
     They are the weights of the skin, smoothed across the lips.
     """
@@ -183,7 +183,7 @@ def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
 
 
 def _loop(person: Person, start: Floats64, ear: Floats64, rise: float) -> Floats64:
-    """The path of an elastic from a corner of the sheet to behind the ear [mm], (n, 3).
+    """Lay an elastic from a corner of the sheet to behind the ear: a path [mm], (n, 3).
 
     ear: the tragion. rise: height above it where the elastic passes the ear [mm].
     """

@@ -18,26 +18,26 @@ MOST_COVER = np.float32(0.99)  # opacity of dense hair
 
 
 def grown_over(behind: Floats32) -> Floats32:
-    """Opacity of hair, 0 to 1, of the shape of `behind`: distances behind the hairline [mm]."""
+    """Return the opacity of hair, 0 to 1, at distances behind the hairline [mm], any shape."""
     dense_depth = np.float32(22.0)  # [mm] behind the hairline, where hair is dense
     t = np.clip(behind / dense_depth, np.float32(0.0), np.float32(1.0))
     return np.asarray(MOST_COVER * t * t * (np.float32(3.0) - np.float32(2.0) * t), np.float32)
 
 
 def fringe_of(cut: Cut | Fall) -> float:
-    """Strength of single hairs at the hairline, 0 to 1: full where a cut is combed down over it."""
+    """Return the strength of single hairs at the hairline, 1 for cuts that are combed over it."""
     is_combed_down = isinstance(cut, Cut) and cut.whorl[2] < 0.0 and not cut.knot
     return 1.0 if is_combed_down else 0.25
 
 
 @lru_cache(maxsize=1)
 def shrunk_strands(size: int, shrink: int) -> Floats32:
-    """The strands of `_strands(size)`, averaged over blocks of `shrink` x `shrink` texels."""
+    """Average `_strands(size)` over blocks of `shrink` x `shrink` texels."""
     return shrunk(_strands(size), shrink)
 
 
 def _strands(size: int) -> Floats32:
-    """A random pattern of single hairs, (size, size), added to the opacity of hair at a hairline.
+    """Draw a random pattern of hairs, (size, size), which changes the opacity at a hairline.
 
     The hairs run down the texture and lean to both sides. The mean is 0, the maximum at most 2.
     """

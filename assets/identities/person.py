@@ -193,7 +193,7 @@ def _resting_face(
 
 
 def _resting(known: Head, identity: Identity) -> Floats32:
-    """Strength of furrows at rest, 0 to 1, (V,); between the brows it is 0."""
+    """Return the strength of furrows at rest, 0 to 1, (V,); between the brows it is low."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
     # [mm] around the glabella in x, y and z, where furrows of age would look like a frown.
@@ -205,7 +205,7 @@ def _resting(known: Head, identity: Identity) -> Floats32:
 
 
 def _own_places(known: Head, identity: Identity) -> Floats64:
-    """Depths of furrows at each vertex, relative to most people of the same age, (V,).
+    """Draw depths of furrows at vertices, relative to most people of the same age, (V,).
 
     The factor varies in random waves over the face, equally on both halves. This is assumed.
     """
@@ -221,7 +221,7 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
 
 
 def _named(known: Head) -> Integers32:
-    """Numbers of the vertices that organs follow: landmarks, anatomy, rings of lips and lids."""
+    """Return the vertices that organs follow: landmarks, anatomy, rings of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
 

@@ -71,7 +71,7 @@ def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
 
 
 def _plain(shirt: Part, colour: Floats64) -> Floats64:
-    """The unshaded colour of a person's shirt, sRGB, (3,)."""
+    """Return the unshaded colour of a person's shirt, sRGB, (3,)."""
     return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
 
 
@@ -110,7 +110,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 
 def _ribs(count: int) -> Floats64:
-    """Shades of knitted columns, (count,); each rib is two columns wide."""
+    """Return shades of knitted columns, (count,); each rib is two columns wide."""
     return np.where(np.arange(count) % 2, 0.9, 1.03)
 
 
@@ -221,20 +221,20 @@ class _Surface:
         self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND:-1]
 
     def lowest(self, columns: Floats64) -> Floats64:
-        """Depths of the shirt's lower edge in some columns [mm], of the shape of `columns`."""
+        """Return depths of the shirt's lower edge [mm], of the shape of `columns`."""
         return np.asarray(np.interp(columns, np.arange(COLUMNS + 1), self._depths[-1]))
 
     def down(self, columns: Floats64, depths: Floats64) -> Floats64:
-        """Points [mm], (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
+        """Return points [mm], (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
         return self._read(self._grid, columns, depths)
 
     def outward(self, columns: Floats64, depths: Floats64) -> Floats64:
-        """Unit normals, (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
+        """Return unit normals, (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
         normals = self._read(self._normals, columns, depths)
         return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
     def columns_at(self, across: Floats64, depths: Floats64) -> Floats64:
-        """Columns of the front, (r, n), at x = `across` [mm], (r, n), and depths [mm], (r, 1)."""
+        """Find columns of the front, (r, n), where x is `across` [mm]; depths: [mm], (r, 1)."""
         places = np.linspace(-13.0, 13.0, 131)
         found = self.down(places % COLUMNS, np.broadcast_to(depths, (len(depths), len(places))))
         rows = [np.interp(x, line[:, 0], places) for x, line in zip(across, found, strict=True)]

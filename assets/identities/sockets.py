@@ -1,7 +1,8 @@
-"""The steep skin between a person's inner brows and upper lids, without ridges.
+"""Remove ridges from the steep skin between a person's inner brows and upper lids.
 
-The modes move neighbours there apart by chance. Triangles of this skin are long. So a ridge along
-their edges is a wedge, light on one side and dark on the other.
+The modes may move neighbouring vertices there in different directions. The triangles of this skin
+are long, so a ridge along their edges would look like a wedge, light on one side and dark on the
+other.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ from ..loading import load
 
 
 class _Sockets(NamedTuple):
-    """The skin between upper lids and brows.
+    """The skin between upper lids and brows, and its E edges that run down to the lids.
 
-    vertex: its vertices, (n,). bends: angles over edges down to the lids, from vertices, (E, V).
-    outward: directions of skin at these edges, (E, 3). pulls: how each vertex moves to flatten an
-    edge [mm/rad], (n, E).
+    vertex: numbers of its vertices, (n,).
+    bends: matrix from all vertices to the vectors of bending at the edges, (E, V).
+    outward: unit normals of the skin at the edges, (E, 3).
+    pulls: motion of each vertex that flattens an edge [mm/rad], (n, E).
     """
 
     vertex: Integers32
@@ -34,11 +36,11 @@ class _Sockets(NamedTuple):
 
 
 def without_ridges(vertices: Floats64) -> Floats64:
-    """Vertices of a face, shape (V, 3), without ridges from the inner brow down to the lid."""
+    """Remove ridges between inner brow and lid from a face; returns its vertices [mm], (V, 3)."""
     sockets = _sockets()
     x = vertices.copy()
-    usual_angle = 0.1  # [rad] of a ridge that nobody sees
-    rounds = 3  # an edge that was pulled in leaves a smaller ridge at its neighbours
+    usual_angle = 0.1  # [rad]; smaller ridges are invisible
+    rounds = 3  # repeated, because flattening an edge leaves smaller ridges at its neighbours
     for _ in range(rounds):
         angles = (sockets.bends @ x * sockets.outward).sum(axis=1)
         ridges = np.maximum(angles - usual_angle, 0.0)
@@ -48,16 +50,16 @@ def without_ridges(vertices: Floats64) -> Floats64:
 
 @lru_cache(maxsize=1)
 def _sockets() -> _Sockets:
-    """The sockets of the built-in head.
+    """Find the sockets of the built-in head.
 
-    A bend over an edge is the hinge of Bergou and others 2006, "A quadratic bending model for
-    inextensible surfaces" (SGP). Pulls have the least sum of squares of bends and displacements.
+    Bending at an edge follows Bergou and others 2006, "A quadratic bending model for inextensible
+    surfaces" (SGP). Pulls minimise the sum of squared bends and squared displacements.
     """
     head = load("head")
-    inner_count = 6  # points of a lid's row in its inner half; the outer half is a hood
-    stiffness = 0.015  # of displacements [rad²/mm²], relative to bends; chosen by eye
+    inner_count = 6  # points in the inner half of a lid's row; the outer half is a hood
+    stiffness = 0.015  # weight of squared displacements [rad²/mm²], chosen by eye
     edges, wings = [], []
-    corners: dict[tuple[int, int], list[int]] = {}  # opposite to each edge
+    corners: dict[tuple[int, int], list[int]] = {}  # edge -> opposite corners of its triangles
     for a, b, c in head.faces.tolist():
         for first, second, wing in ((a, b, c), (b, c, a), (c, a, b)):
             corners.setdefault((min(first, second), max(first, second)), []).append(wing)
@@ -84,7 +86,7 @@ def _sockets() -> _Sockets:
 
 
 def _hinge(x: Floats64, edge: tuple[int, int], wings: list[int]) -> Floats64:
-    """Weights of vertices, (V,), whose sum is an angle [rad] times the edge's outward normal."""
+    """Return weights of vertices, (V,), that give an angle [rad] times the edge's normal."""
     a, b = edge
     weights = np.zeros(len(x))
     for wing in wings:

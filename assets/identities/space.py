@@ -10,7 +10,7 @@ except for the size of the head. Sex and age move its mean:
 
 - The means of women and men differ as the published measures do (`assets.norms`).
 - Some points move, too: brow ridge, jaw and chin of men, and sagging skin. These amounts are chosen
-  by eye, after books of anatomy.
+  by eye, as anatomists describe them.
 
 The norms are of Europeans. So each person's mean lies at a random fraction, 0 to 1, between the
 mean of the model and the means of the norms. We assume that neither this fraction nor the shape
@@ -19,7 +19,7 @@ depends on the skin tone.
 Three widths of the norms were measured with calipers, which press the skin onto the bone. So the
 norms give less than the width of the surface: their ratio of jaw width to the distance of the outer
 eye corners is 1.15, and 1.3 on three scanned persons. PRESSED corrects this. Its lengths are chosen
-so that these three persons agree.
+so that these three persons agree with the norms.
 """
 
 from __future__ import annotations
@@ -114,12 +114,12 @@ class Identity:
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
-    """The norms of a sex: code -> sample."""
+    """Return the norms of a sex: code of a measure -> mean and deviation."""
     return {code: norm.women if sex is Sex.WOMAN else norm.men for code, norm in NORMS.items()}
 
 
 def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
-    """Z-scores of measures on the surface: code -> deviation from the mean of a sex.
+    """Return z-scores of measures on the surface: code -> deviation from the mean of a sex.
 
     measures: code -> length [mm].
     """
@@ -144,7 +144,7 @@ class PersonSpace:
     anatomy: Mapping[str, int]
 
     def moved(self, weights: Floats64) -> Floats64:
-        """Displacements of the vertices from the mean [mm], (V, 3), by weights (k,)."""
+        """Return displacements of the vertices from the mean [mm], (V, 3), by weights (k,)."""
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
@@ -188,7 +188,7 @@ class PersonSpace:
         return np.clip(mean + width * chance, -most_deviations, most_deviations)
 
     def _measured(self, sex: Sex) -> tuple[Floats64, Floats64, Floats64]:
-        """The norms as linear equations for weights: rows (m, k), and two right sides (m,).
+        """Write the norms as linear equations for weights: rows (m, k), and two right sides (m,).
 
         All are in standard deviations of the norms. The first right side leads from the mean of
         the model to the mean of both sexes in the norms, the second from there to one sex.
@@ -205,7 +205,7 @@ class PersonSpace:
 
 @lru_cache(maxsize=1)
 def person_space() -> PersonSpace:
-    """The model of faces around the mean of people, read from the data of the package."""
+    """Read the model of faces around the mean of people from the data of the package."""
     head = load("head")
     arrays = read_arrays(head.beside("_modes.npz"))
     modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))

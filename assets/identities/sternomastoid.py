@@ -26,7 +26,7 @@ COURSE = np.array(
 
 
 def height_of(person: Person) -> float:
-    """How much farther the muscles stand out than those of the built-in head [mm]."""
+    """Return how much farther the muscles stand out than those of the built-in head [mm]."""
     measures = person.measures
     usual_ratio = 1.27  # width of the cheekbones divided by the width of the jaw
     lean = measures["zy-zy"] / measures["go-go"] - usual_ratio
@@ -34,7 +34,7 @@ def height_of(person: Person) -> float:
 
 
 def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
-    """Reliefs of both muscles in a map of (size, size) texels."""
+    """Shape both muscles in a map of (size, size) texels."""
     height = height_of(person)
     tendon = max(height, 0.0)  # the built-in head shows no tendon, so it cannot sink
     return tuple(
@@ -45,7 +45,7 @@ def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
 
 @lru_cache(maxsize=4)
 def _raised(size: int, side: float) -> tuple[Relief, Relief]:
-    """Reliefs of a muscle's belly, and of its tendon with the hollow in front, both 1 mm high.
+    """Shape a muscle's belly, and its tendon with the hollow in front, both 1 mm high.
 
     side: 1 for the left muscle, -1 for the right one.
     """

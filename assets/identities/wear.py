@@ -128,7 +128,7 @@ def _in_front(places: Floats64, lens: Floats64, cornea: float) -> Floats64:
 
 
 def _depth_at(skin: Floats64, points: Floats64) -> float:
-    """Greatest distance by which skin lies in front of points in z [mm]; negative if all is behind.
+    """Return how far skin lies in front of points at most, along z [mm]; negative: behind.
 
     skin: (V, 3). points: (n, 3).
     """
@@ -143,7 +143,7 @@ def _depth_at(skin: Floats64, points: Floats64) -> float:
 
 
 def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
-    """The path of a temple from the hinge over the ear and down behind it [mm], (n, 3)."""
+    """Lay a temple from the hinge over the ear and down behind it: a path [mm], (n, 3)."""
     side = np.sign(hinge[0])
     top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
     straight = beside_head(skin, hinge, top, 0.5 * thickness)
