@@ -37,13 +37,15 @@ FARTHEST = 1e9  # of a coordinate, in any unit: far beyond any mesh, and its cub
 class Mesh:
     """A plain triangle mesh: the least that `sim.create` and `refine.create` need.
 
-    vertices: positions [unit of the file], shape (V, 3), float64.
-    faces: vertex numbers, shape (F, 3), int32.
-    texture: the file's own pictures; None without any. colours: vertex colours, sRGB, shape (V, 3),
-    uint8; None without any. has_colour: flags of vertices with a colour, shape (V,); None: all.
-    same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the
-    triangles with the vertex numbers of the file, shape (F, 3), if some vertices are doubled; None:
-    equal to `faces`. notes: remarks for the user, a line each.
+    - vertices: positions [unit of the file], shape (V, 3), float64.
+    - faces: vertex numbers, shape (F, 3), int32.
+    - texture: texture of the file; None if the file has none.
+    - colours: vertex colours, sRGB, shape (V, 3), uint8; None if the file has none.
+    - has_colour: whether each vertex has a colour, shape (V,); None: all have.
+    - same: for each vertex, the coinciding vertex that `faces` use instead, shape (V,).
+    - corners: triangles with the vertex numbers of the file, shape (F, 3), if some vertices
+      coincide; None: equal to `faces`.
+    - notes: lines with remarks for the user.
     """
 
     vertices: Floats64

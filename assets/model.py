@@ -61,10 +61,10 @@ class Segment(IntEnum):
 class Eye:
     """One eyeball: a sphere that faces +z at rest.
 
-    name: "right" or "left" (the subject's).
-    centre: centre of rotation [mm], shape (3,), float64.
-    radius: of the sclera [mm].
-    iris_radius: of the coloured disc [mm].
+    - name: "right" or "left" (the subject's).
+    - centre: centre of rotation [mm], shape (3,), float64.
+    - radius: radius of the sclera [mm].
+    - iris_radius: radius of the iris [mm].
     """
 
     name: str
@@ -80,22 +80,21 @@ class Eye:
 class Part:
     """A rigid object that is drawn but not simulated: an eyeball, a row of teeth, a shirt.
 
-    name: unique within the head.
-    vertices: rest positions [mm], shape (n, 3), float32.
-    normals: unit normals, shape (n, 3), float32.
-    faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
-    colours: sRGB 0..1, shape (n, 3), float32.
-    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. Parts of the
-        "neck" stand still.
-    shine: strength of the highlight, 0 (dull) to 1 (wet).
-    roots: for a part that moves with the skin, the number of each vertex's root: the vertex of the
-    part whose place on the skin it follows, shape (n,), int32; None for other parts. strand_radius:
-    half the thickness of its hairs [mm]; 0 for a part without hairs. mandible_shares: for a part of
-    the skull that stretches between both jaws, how far each vertex
-        follows the mandible, 0 to 1, shape (n,), float32; None for other parts.
-    striation: for hair, the place of each vertex across and along its strands [mm], the vector from
-    root to tip [mm], and the density, shape (n, 6), float32; None for other
-        parts.
+    - name: unique within the head.
+    - vertices: rest positions [mm], shape (n, 3), float32.
+    - normals: unit normals, shape (n, 3), float32.
+    - faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
+    - colours: sRGB 0..1, shape (n, 3), float32.
+    - bone: the bone that moves the part: "cranium", "mandible", "eye_left" or "eye_right". Parts
+      with the bone "neck" do not move.
+    - shine: specular strength, 0 (dull) to 1 (wet).
+    - roots: for a part on the skin, the number of the root of each vertex, (n,), int32. The root is
+      a vertex of the part, and its motion on the skin moves the vertex. None for other parts.
+    - strand_radius: radius of the part's hairs [mm]; 0 for a part without hairs.
+    - mandible_shares: for a part that stretches between both jaws, the weight of the mandible's
+      motion at each vertex, 0 to 1, (n,), float32; None for other parts.
+    - striation: for hair, (n, 6), float32: coordinates across and along strands [mm], the vector
+      from root to tip [mm], and the density; None for other parts.
     """
 
     name: str
@@ -125,10 +124,10 @@ class Part:
 class Layer:
     """A table of controls above the muscles: action units, expressions, visemes, ARKit shapes.
 
-    title: heading under which a panel lists them.
-    source: its file, for error messages.
-    rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
-        sim/layers.py explains them.
+    - title: heading under which a panel lists the controls.
+    - source: name of the file in error messages.
+    - rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
+      sim/layers.py explains them.
     """
 
     NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "mirror", "share_of", "at_least")
@@ -141,16 +140,16 @@ class Layer:
 class Wrinkles:
     """Wrinkles of a face: a map of furrows, and the conditions under which they show.
 
-    map: row 0 is v = 1, shape (H, W, 4), uint8. Slope of the skin's height along u and v (128 is
-        level), depth of the furrow, and the slot whose amount the texel follows (0 the first, 255
-        the second, a mixture in between).
-    steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
-    across: for each vertex and slot, the direction at rest in which wrinkling skin shortens; its
-        length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
-    resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
-        all.
-    folds: the share of `resting` that is anatomy, such as folds of lids, and also shows in a face
-    that is drawn without wrinkles; shape (V,); (1,) for all.
+    - map: (H, W, 4), uint8; row 0 is v = 1. The channels are the slopes of the skin's height along
+      u and v (128 is flat), the depth of the furrow, and the blend of the amounts of both slots (0
+      is the first, 255 the second).
+    - steepest: slope that the byte 255 means [mm per unit of texture coordinates].
+    - across: for each vertex and slot, the direction at rest in which wrinkling skin shortens; its
+      length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
+    - resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
+      all.
+    - folds: the fraction of `resting` that is anatomy, such as folds of lids, 0 to 1, shape (V,);
+      (1,) for all. It also shows in a face that is drawn without wrinkles.
     """
 
     map: Image
@@ -203,31 +202,31 @@ class FineMesh:
 class Head:
     """A head to simulate and draw.
 
-    vertices: rest positions of the skin [mm], shape (V, 3), float64.
-    faces: vertex numbers, shape (F, 3), int32.
-    landmarks: vertex numbers of the 68 iBug points, shape (68,), int32.
-    bone_depth: distance from the skin to the bone beneath [mm], shape (V,), float64.
-    mandible_weight: 0 = moves with the cranium, 1 = with the mandible, shape (V,), float64.
-    jaw_axis: centres of the right and the left condyle [mm], shape (2, 3), float64.
-    mirror: number of the mirror image of each vertex, shape (V,), int32.
-    anatomy: named anatomical points, name -> vertex number.
-    rings: named vertex rows of the left side, name -> vertex numbers, shape (n,), int32; the same
-        rows with _right for the right side. `eye_0_left` to `eye_4_left` run outward around the
-        eye; `mouth_0_left` to `mouth_7_left` around half of the mouth, from the middle of the
-        upper lip over the corner to the middle of the lower lip (2: where the lips meet, 6: border
-        of the red); `ear_0_left` to `ear_4_left` from the root of the ear over its free
-        edge (1) to the ridge around the concha, whose floor is `concha_left`; also `nostril_left`,
-        `alar_crease_left`, `rim_left` (from the back of the head along the nape to the throat).
-    eyes: the right and the left eye.
-    parts: rigid parts that are drawn with the head.
-    uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
-        piece without seams, so that U = V.
-    face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
-        same numbers as `faces`.
-    file: its data file. Maps and meshes for drawing lie beside it, and are read at their first use;
-        unreadable ones raise AssetError.
-    rig: the parsed rig file.
-    layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
+    - vertices: rest positions of the skin [mm], shape (V, 3), float64.
+    - faces: vertex numbers, shape (F, 3), int32.
+    - landmarks: vertex numbers of the 68 iBug points, shape (68,), int32.
+    - bone_depth: distance from the skin to the bone beneath [mm], shape (V,), float64.
+    - mandible_weight: 0 = moves with the cranium, 1 = with the mandible, shape (V,), float64.
+    - jaw_axis: centres of the right and the left condyle [mm], shape (2, 3), float64.
+    - mirror: number of the mirror image of each vertex, shape (V,), int32.
+    - anatomy: named anatomical points, name -> vertex number.
+    - rings: named vertex rows of the left side, name -> vertex numbers, shape (n,), int32; the same
+      rows with _right for the right side. `eye_0_left` to `eye_4_left` run outward around the eye;
+      `mouth_0_left` to `mouth_7_left` around half of the mouth, from the middle of the upper lip
+      over the corner to the middle of the lower lip (2: where the lips meet, 6: border of the red);
+      `ear_0_left` to `ear_4_left` from the root of the ear over its free edge (1) to the ridge
+      around the concha, whose floor is `concha_left`; also `nostril_left`, `alar_crease_left`,
+      `rim_left` (from the back of the head along the nape to the throat).
+    - eyes: the right and the left eye.
+    - parts: rigid parts that are drawn with the head.
+    - uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
+      piece without seams, so that U = V.
+    - face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
+      same numbers as `faces`.
+    - file: data file of the head. Maps and meshes for drawing lie beside this file, and are read at
+      their first use; an unreadable file raises AssetError.
+    - rig: the parsed rig file.
+    - layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
 
     vertices: Floats64
@@ -326,8 +325,8 @@ class Head:
 class Plane:
     """The triangulated plane of the paper's Figure 9.
 
-    vertices: rest positions [mm], shape (96, 3), float64, in the plane z = 0.
-    faces: vertex numbers, counter-clockwise seen from +z, shape (154, 3), int32.
+    - vertices: rest positions [mm], shape (96, 3), float64, in the plane z = 0.
+    - faces: vertex numbers, counter-clockwise seen from +z, shape (154, 3), int32.
     """
 
     vertices: Floats64

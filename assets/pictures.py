@@ -32,10 +32,10 @@ LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card
 class Texture:
     """Pictures of a mesh, and their places.
 
-    uv: texture coordinates, v up, shape (U, 2), float32. face_uv: their numbers for each corner,
-        shape (F, 3), int32.
-    picture: number in `pictures` for each triangle, -1 for none, shape (F,).
-    pictures: functions that read one picture each, shape (H, W, 3), or raise AssetError.
+    - uv: texture coordinates, v up, shape (U, 2), float32.
+    - face_uv: row of `uv` at each corner of triangles, shape (F, 3), int32.
+    - picture: number in `pictures` for each triangle, or -1, shape (F,).
+    - pictures: functions each of which reads a picture, (H, W, 3), or raises AssetError.
     """
 
     uv: Floats32

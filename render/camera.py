@@ -41,13 +41,13 @@ VIEWS: dict[str, tuple[float, float]] = {
 class OrbitCamera:
     """A camera on a sphere around `target`; all fields may be set.
 
-    target: point that the camera looks at and turns around, (3,), float64.
-    distance: distance of the camera from the target [unit of the scene].
-    yaw, pitch: angles of the camera on the sphere [degrees]; 0 and 0 are in front.
-    field_of_view: vertical field of view [degrees].
-    narrowest_aspect: frames of a smaller aspect (width / height) show the same width of the scene,
-        and more of its height; `framing` sets this field.
-    scene_centre, scene_radius: a sphere around the framed scene, which sets the clipping planes.
+    - target: point that the camera looks at and turns around, (3,), float64.
+    - distance: distance of the camera from the target [unit of the scene].
+    - yaw, pitch: angles of the camera on the sphere [degrees]; 0 and 0 are in front.
+    - field_of_view: vertical field of view [degrees].
+    - narrowest_aspect: frames of a smaller aspect (width / height) show the same width of the
+      scene, and more of its height; `framing` sets this field.
+    - scene_centre, scene_radius: a sphere around the framed scene, which sets the clipping planes.
     """
 
     target: Floats64
@@ -196,10 +196,10 @@ class OrbitCamera:
 class CameraView:
     """A copy of a camera, and the viewport into which it draws.
 
-    viewport: x, y, width, height from the lower left corner [pixels of the surface]; None: the
-        whole surface.
-    clip: the part of the surface that is drawn; None: the whole viewport. Two views with different
-        clips show two meshes in one picture.
+    - viewport: x, y, width, height from the lower left corner [pixels of the surface]; None: the
+      whole surface.
+    - clip: the part of the surface that is drawn; None: the whole viewport. Two views with
+      different clips show two meshes in one picture.
     """
 
     camera: OrbitCamera

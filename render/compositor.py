@@ -21,8 +21,8 @@ _UNIT = 4  # texture unit while enlarging
 class Detail:
     """The resolution of the scene in a window.
 
-    samples: number of samples per pixel; 0: edges are not smoothed by samples.
-    scale: pixels of the scene per pixel of the window, 0 to 1.
+    - samples: number of samples per pixel; 0: edges are not smoothed by samples.
+    - scale: pixels of the scene per pixel of the window, 0 to 1.
     """
 
     samples: int = 4
@@ -69,7 +69,7 @@ class Compositor:
             frame = smoother.frame
             colour = smoother.colour
         target.use()
-        gl.viewport = (0, 0, *self.size)  # of the bound framebuffer
+        gl.viewport = (0, 0, *self.size)  # set for the bound framebuffer
         gl.scissor = area
         if scene.size == self.size:
             gl.copy_framebuffer(target, frame)

@@ -63,12 +63,12 @@ class DrawnPart(Protocol):
 class PlacedPart:
     """A part at a position, with the shape that it has when this object is made.
 
-    transform: matrix from the part to the world, for column vectors, (4, 4).
-    lies_beneath: whether the part lies under the skin. Closed skin then hides the part, even where
-        the part comes out of the skin.
-    throws_shadow: whether the part throws a shadow on other parts and on the skin.
-    opening: opening through which light reaches the part; None: light comes from all around.
-    vertices, normals, colours: arrays of the part.
+    - transform: matrix from the part to the world, for column vectors, (4, 4).
+    - lies_beneath: whether the part lies under the skin. Closed skin then hides the part, even
+      where the part comes out of the skin.
+    - throws_shadow: whether the part throws a shadow on other parts and on the skin.
+    - opening: opening through which light reaches the part; None: light comes from all around.
+    - vertices, normals, colours: arrays of the part.
     """
 
     part: DrawnPart
@@ -107,9 +107,9 @@ class PlacedPart:
 class SkinMaps:
     """The textures of a skin.
 
-    texture: albedo of the front side, and fine shape. An untextured style hides the albedo.
-    bumps: furrows, which only per-pixel shading shows. Their strength is a product of the style's
-        `bumps` and of amounts per vertex.
+    - texture: albedo of the front side, and fine shape. An untextured style hides the albedo.
+    - bumps: furrows, which only per-pixel shading shows. Their strength is a product of the style's
+      `bumps` and of amounts per vertex.
     """
 
     texture: Texture | None = None
@@ -124,13 +124,13 @@ NO_MAPS = SkinMaps()
 class Skin:
     """The mesh of a frame: the last upload of a stream, with maps and colours.
 
-    maps: textures; they need a stream of at least 8 columns, else ValueError is raised.
-    values: a number for each triangle that decides its colour (see `ColourBy`), (M,), uint8; needed
-        unless the style has `ColourBy.NONE`.
-    fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. Columns 17
-        and 18 of the stream say how; a stream with fewer columns raises ValueError.
-    mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. A fading neck hides its
-        inner side, but through the lips this side stays visible.
+    - maps: textures; they need a stream of at least 8 columns, else ValueError is raised.
+    - values: a number for each triangle that decides its colour (see `ColourBy`), (M,), uint8;
+      needed unless the style has `ColourBy.NONE`.
+    - fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. Columns 17
+      and 18 of the stream say how; a stream with fewer columns raises ValueError.
+    - mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. A fading neck hides its
+      inner side, but through the lips this side stays visible.
     """
 
     stream: MeshBuffers
@@ -171,9 +171,9 @@ class Skin:
 class Frame:
     """The content of one viewport.
 
-    style: shading, colours, background, and opacity of the skin.
-    cut: plane; in front of it a translucent skin is opaque.
-    overlays: lines that are drawn over everything.
+    - style: shading, colours, background, and opacity of the skin.
+    - cut: plane; in front of it a translucent skin is opaque.
+    - overlays: lines that are drawn over everything.
     """
 
     view: CameraView

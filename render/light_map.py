@@ -69,7 +69,8 @@ class LightMap:
     def background(self, turn: float = 0.0, exposure: float | None = None) -> MapBackground:
         """Return this map, out of focus and exposed, as the background of a scene that it lights.
 
-        turn: as in `light`. exposure: factor of `exposed`; None: it is computed again.
+        - turn: as in `light`.
+        - exposure: factor of `exposed`; None: it is computed again.
         """
         if exposure is None:
             exposure = self.exposed(turn)[1]

@@ -17,10 +17,10 @@ from .programs import write_uniform
 class Opening:
     """An opening in a skin, and the position of a part in it.
 
-    rim: points around the opening in the world, (RIM_POINTS, 3), clockwise seen from outside, with
-        the upper half first.
-    is_filled: whether the part reaches the rim, like an eyeball between lids. Otherwise the part
-        lies behind the rim, like teeth behind lips.
+    - rim: points around the opening in the world, (RIM_POINTS, 3), clockwise seen from outside,
+      with the upper half first.
+    - is_filled: whether the part reaches the rim, like an eyeball between lids. Otherwise the part
+      lies behind the rim, like teeth behind lips.
     """
 
     RIM_POINTS: ClassVar[int] = 12

@@ -18,10 +18,10 @@ _PATIENCE = 60.0  # [s]; software drivers need a few seconds on a loaded machine
 class Finding:
     """Whether one way to draw works on this machine.
 
-    name: the way, "offscreen" or "window".
-    message: text of the GLError if it failed, else "".
-    samples: greatest number of samples per pixel.
-    lends_gpu_streams: whether the graphics card that draws meshes can also refine them.
+    - name: the way, "offscreen" or "window".
+    - message: text of the GLError if it failed, else "".
+    - samples: greatest number of samples per pixel.
+    - lends_gpu_streams: whether the graphics card that draws meshes can also refine them.
     """
 
     name: str

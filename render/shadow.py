@@ -24,7 +24,7 @@ RESOLUTION = 288  # texels in width and height; on a head 1.2 mm each, so shadow
 # These lengths are fractions of the scene's radius.
 MAP_REACH = 1.15  # half the map's width; a face moves beyond its rest pose
 TEXEL = 2.0 * MAP_REACH / RESOLUTION  # size of a texel
-OFFSET = 0.003  # of look-ups above the surface, 0.45 mm on a head
+OFFSET = 0.003  # distance of look-ups above the surface, 0.45 mm on a head
 STEEP_HEIGHT = 0.999  # y of a light's direction, above which y cannot be the map's up direction
 
 

@@ -218,9 +218,11 @@ class MeshBuffers:
 class Stream(MeshBuffers):
     """Arrays of a mesh, which the borrower fills and uploads.
 
-    vertices: rows x y z, nx ny nz[, u v[, columns of bumps]], (vertex_capacity, columns), float32.
-    triangles: vertex numbers, (triangle_capacity, 3), uint32.
-    source: number of the base triangle of each triangle, (triangle_capacity,), int32; not uploaded.
+    - vertices: rows x y z, nx ny nz[, u v[, columns of bumps]], (vertex_capacity, columns),
+      float32.
+    - triangles: vertex numbers, (triangle_capacity, 3), uint32.
+    - source: number of the base triangle of each triangle, (triangle_capacity,), int32; not
+      uploaded.
     """
 
     def __init__(
@@ -276,10 +278,10 @@ class GpuStream(MeshBuffers):
     back. Three features need the arrays on the processor, and wait until they are fetched: bumps,
     colours by triangle, and edge smoothing with software OpenGL.
 
-    vertex_buffer, index_buffer: vertices and triangles, as in a `Stream`.
-    source_buffer: number of the base triangle of each triangle, int32.
-    command_buffer: 7 uint32, a DrawElementsIndirectCommand, then the numbers of vertices and of
-        triangles.
+    - vertex_buffer, index_buffer: vertices and triangles, as in a `Stream`.
+    - source_buffer: number of the base triangle of each triangle, int32.
+    - command_buffer: 7 uint32, a DrawElementsIndirectCommand, then the numbers of vertices and of
+      triangles.
     """
 
     def __init__(
@@ -304,9 +306,9 @@ class GpuStream(MeshBuffers):
     ) -> None:
         """Draw the content of these buffers from now on.
 
-        mesh: an object that fetches the arrays.
-        positions: vertices of the base mesh, (V, 3); all new vertices lie near their box.
-        has_bumps: as in `Stream.upload`.
+        - mesh: an object that fetches the arrays.
+        - positions: vertices of the base mesh, (V, 3); all new vertices lie near their box.
+        - has_bumps: as in `Stream.upload`.
         """
         self._check_bumps(has_bumps)
         self.mesh = mesh

@@ -48,7 +48,7 @@ WARM_RATIO = 0.8  # warmth from which an albedo counts as skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
 # Colours of triangles whose edges have 1 to 6 splits in total. They run from green to indigo, hues
-# that skin does not have. They become darker, so greyscale and colour blindness keep their order.
+# that skin does not have. They become darker, so their order also shows without hue.
 SPLIT_PALETTE: tuple[Colour, ...] = (
     (0.76, 0.89, 0.62),
     (0.46, 0.79, 0.66),
@@ -71,7 +71,8 @@ class Background:
 class MapBackground:
     """An environment map behind a scene, which moves with the camera.
 
-    radiance: as in `LightMap`, (H, W, 3). turn: rotation to the viewer's right [deg].
+    - radiance: as in `LightMap`, (H, W, 3).
+    - turn: rotation to the viewer's right [deg].
     """
 
     radiance: Floats64
@@ -91,10 +92,11 @@ Vector = tuple[float, float, float]
 class Light:
     """The light of a scene; the default is a studio, for which all other values were chosen.
 
-    to_key, to_fill: unit vectors toward the lights in view space (x right, y up, z to the viewer).
-    key, fill, rim: colours of these lights, linear.
-    sky, ground: colours of the ambient light from above and from below, linear.
-    around: nine coefficients that replace sky and ground (see light_map.py); empty: none.
+    - to_key, to_fill: unit vectors toward the lights in view space (x right, y up, z to the
+      viewer).
+    - key, fill, rim: colours of these lights, linear.
+    - sky, ground: colours of the ambient light from above and from below, linear.
+    - around: nine coefficients that replace sky and ground (see light_map.py); empty: none.
     """
 
     to_key: Vector = (-0.5300, 0.6300, 0.5677)  # from behind the viewer's left shoulder

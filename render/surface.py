@@ -27,11 +27,11 @@ OLDEST_VERSION = 330  # OpenGL, times 100: all drawing needs it
 class Surface:
     """The interface of both kinds, which `open_offscreen` and `open_window` make.
 
-    gl: the OpenGL context; objects without references are released when a frame begins.
-    samples: number of samples per pixel that smooth edges; 0: edges are not smoothed.
-    target: the target into which the renderer draws.
-    pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
-    scale: pixels of the target per pixel of the surface; a window may set less than 1.
+    - gl: the OpenGL context; objects without references are released when a frame begins.
+    - samples: number of samples per pixel that smooth edges; 0: edges are not smoothed.
+    - target: the target into which the renderer draws.
+    - pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
+    - scale: pixels of the target per pixel of the surface; a window may set less than 1.
     """
 
     _current: ClassVar["Surface | None"] = None

@@ -44,8 +44,8 @@ class _Mipmaps:
 class Texture(_Mipmaps):
     """The albedo of a skin, with ambient occlusion and fine shape.
 
-    redness: median ratio of red to green light; redder texels are lips, which are glossy.
-    fine_shape: map of two channels, or None.
+    - redness: median ratio of red to green light; redder texels are lips, which are glossy.
+    - fine_shape: map of two channels, or None.
     """
 
     def __init__(
@@ -57,9 +57,11 @@ class Texture(_Mipmaps):
     ) -> None:
         """Upload an image to the OpenGL of a surface.
 
-        image: albedo, sRGB, top row first, (H, W, 3), uint8. Texture coordinate v is 1 at the top.
-        occlusion: ambient occlusion, 255 where all ambient light arrives, (H, W), uint8.
-        fine_shape: a map of two channels, which only per-pixel shading shows.
+        - image: albedo, sRGB, top row first, (H, W, 3), uint8. Texture coordinate v is 1 at the
+          top.
+        - occlusion: ambient occlusion, 255 where all ambient light arrives, (H, W), uint8.
+        - fine_shape: a map of two channels, which only per-pixel shading shows.
+
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         gl = surface.gl
@@ -95,7 +97,8 @@ class Texture(_Mipmaps):
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
         """Bind the textures to a program.
 
-        unit: texture unit of the albedo. occlusion: strength of the ambient occlusion, 0 or 1.
+        - unit: texture unit of the albedo.
+        - occlusion: strength of the ambient occlusion, 0 or 1.
         """
         program["albedo_texture"] = unit
         program["around_texture"] = _AROUND_UNIT
@@ -109,9 +112,9 @@ class Texture(_Mipmaps):
 class BumpMap(_Mipmaps):
     """A bump map: furrows of variable strength (4 channels), or constant fine shape (2 channels).
 
-    texels: the uploaded array, (H, W, channels).
-    steepest: slope that the byte 255 means [unit of the scene per unit of texture coordinates].
-    define: preprocessor name with which programs include the map.
+    - texels: the uploaded array, (H, W, channels).
+    - steepest: slope that the byte 255 means [unit of the scene per unit of texture coordinates].
+    - define: preprocessor name with which programs include the map.
     """
 
     def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:

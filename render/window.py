@@ -30,12 +30,12 @@ from .surface import (
 class WindowSurface(Surface):
     """A surface in a window; `detail`, `area`, `rules` and `labels` may be set for the next frames.
 
-    handle: the GLFW window, for input and GUI libraries.
-    detail: resolution of the scene.
-    area: the rectangle that shows the scene [pixels], if panels hide the rest; None: all.
-    rules: rectangles [pixels] in one colour over the scene, such as a line between two halves.
-    labels: pictures over the scene and the rules, such as captions. Each has x and y of its lower
-        left corner [pixels], and premultiplied RGBA, top row first, (h, w, 4), uint8.
+    - handle: the GLFW window, for input and GUI libraries.
+    - detail: resolution of the scene.
+    - area: the rectangle that shows the scene [pixels], if panels hide the rest; None: all.
+    - rules: rectangles [pixels] in one colour over the scene, such as a line between two halves.
+    - labels: pictures over the scene and the rules, such as captions. Each has x and y of its lower
+      left corner [pixels], and premultiplied RGBA, top row first, (h, w, 4), uint8.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -181,8 +181,8 @@ def open_window(
     Its frame may have more pixels than screen units. If you use imgui_bundle, import it first: glfw
     must come from the GUI library.
 
-    samples: as in `open_offscreen`.
-    is_scaled: whether to enlarge the window on dense screens whose unit is a pixel.
+    - samples: as in `open_offscreen`.
+    - is_scaled: whether to enlarge the window on dense screens whose unit is a pixel.
 
     Raises ValueError for an impossible size, and GLError if there is no screen or no OpenGL 3.3.
     """

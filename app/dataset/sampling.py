@@ -202,7 +202,7 @@ class _Face:
 def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
-    """Return a random blink that shuts the lids partly or fully, or {}; other units of lids win."""
+    """Return a random blink, partial or full; {} for no blink, or if other units move the lids."""
     is_blinking = random.random() < table.eyes.blink
     closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):

@@ -60,7 +60,7 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
 def ball_of_pieces(
     pieces: Sequence[Floats64], centre: Floats64, radius: float, lids: Floats64
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the largest eyeball among pieces (n, 3); None if there is none.
+    """Find centre and radius [mm] of the largest eyeball among pieces (n, 3), or None.
 
     centre, radius: an estimate. lids: landmarks of the eye [mm], (6, 3); a ball that protrudes
     between them is no eyeball.
@@ -81,7 +81,7 @@ def ball_of_pieces(
 def ball_of_socket(
     skin: Floats64, outward: Floats64, centre: Floats64, radius: float
 ) -> tuple[Floats64, float] | None:
-    """Centre and radius [mm] of the ball in a socket behind the lids; None if there is no socket.
+    """Find centre and radius [mm] of the ball in a socket behind the lids; None without socket.
 
     skin: vertices [mm], (V, 3). outward: cosine between each vertex normal and the direction from
     `centre` to the vertex, (V,). centre, radius: an estimate of the ball [mm].

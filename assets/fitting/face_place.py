@@ -23,7 +23,7 @@ def placed(points: Floats64, known: Head) -> Similarity:
     """
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
-    least_size = 1e-9  # of the box around the landmarks; squares of less would lose precision
+    least_size = 1e-9  # [unit of the mesh]; squares of less would lose precision
     if extent < least_size:
         raise AssetError(
             f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "

@@ -167,7 +167,7 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     """Find the vertices nearest to points, (68,); a point off the mesh raises AssetError."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    most_share = 0.05  # greatest distance from the mesh, relative to that of the outer eye corners
+    most_share = 0.05  # greatest distance from the mesh / distance of the outer eye corners
     outer_eye_corners = [36, 45]
     allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:

@@ -55,7 +55,7 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
 
 @dataclass(frozen=True)
 class LipCut:
-    """A cut between the lips of a mesh, which doubles vertices.
+    """A cut between the lips of a mesh; it doubles vertices.
 
     sources: the file's vertices that are doubled, (n,). The new vertices come after the last vertex
         of the file.

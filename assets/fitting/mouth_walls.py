@@ -136,7 +136,7 @@ def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32
     border = sides[~has_other]
     group = pieces_of(border, count)[border[:, 0]]
     throat = mouth.points((0.0, -71.0, -10.0))  # 28 mm behind the throat
-    widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of the mouth
+    widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of lids, lips
     tips: list[Floats64] = []
     fans: list[Integers32] = []
     for number in np.unique(group):

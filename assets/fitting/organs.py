@@ -75,7 +75,7 @@ def _extent(points: Floats64) -> float:
 def _behind_lids(
     centre: Floats64, radius: float, middle: Floats64, skin: Floats64
 ) -> tuple[Floats64, float]:
-    """Centre and radius [mm] of the sphere that touches the lids from behind all around.
+    """Find centre and radius [mm] of the sphere that touches the lids from behind all around.
 
     centre, radius: an estimate. middle: centre of the opening, (3,). skin: points of the lids,
     (n, 3).

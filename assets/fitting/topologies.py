@@ -7,7 +7,7 @@ each with one topology:
 
     {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
 
-The built-in head, which is that of all persons, and the coarse head are recognised, too.
+The built-in head, whose topology all persons have, and the coarse head are recognised, too.
 """
 
 from __future__ import annotations

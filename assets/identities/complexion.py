@@ -99,12 +99,12 @@ def recoloured(
 ) -> Image:
     """Recolour the albedo of the built-in head for a skin tone: sRGB, (H, W, 3), uint8.
 
-    angle: ITA [deg], DARKEST to LIGHTEST; else ValueError.
-    blood: amount relative to most skin of this tone; 0.7 is pale, 1.3 flushed.
-    haired_as: ITA [deg] that decides the colour of hair. Hair begins at the hairline of `features`.
-        None: `angle` decides the colour, and hair begins at the built-in hairline.
-    fringe: strength of single hairs at the hairline, 0 to 1.
-    shrink: factor by which width and height are smaller, a power of 2 up to 16.
+    - angle: ITA [deg], DARKEST to LIGHTEST; else ValueError.
+    - blood: amount relative to most skin of this tone; 0.7 is pale, 1.3 flushed.
+    - haired_as: ITA [deg] that decides the colour of hair. Hair begins at the hairline of
+      `features`. None: `angle` decides the colour, and hair begins at the built-in hairline.
+    - fringe: strength of single hairs at the hairline, 0 to 1.
+    - shrink: factor by which width and height are smaller, a power of 2 up to 16.
     """
     # This module imports numba, which takes long.
     from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
@@ -186,8 +186,10 @@ def coloured(
 ) -> Person:
     """Give a person a skin tone, a colour of eyes, and hair in the person's cut.
 
-    angle: ITA [deg]. blood, shrink: as in `recoloured`; textures of wrinkles shrink, too.
-    irises: name of a colour; None leaves the eyes unchanged.
+    - angle: ITA [deg].
+    - blood, shrink: as in `recoloured`; textures of wrinkles shrink, too.
+    - irises: name of a colour; None leaves the eyes unchanged.
+
     The function `in_tone` of the result changes the tone of the skin, and leaves the hair.
     """
     parts = person.parts

@@ -102,7 +102,7 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
 def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
     """Carve lines into a region; returns their slopes and depths [bytes], (h, w, 3).
 
-    per_slope: reciprocal of the height between two texels that has the greatest slope [1/mm].
+    per_slope: 1 / greatest difference in height between neighbouring texels [1/mm].
     """
     courses, depths = (
         np.array([getattr(line, name) for line in drawn], dtype=np.float32)

@@ -42,17 +42,17 @@ class Fan(Enum):
 class Lines(NamedTuple):
     """The expression lines of a person; all depths are relative to the built-in head's.
 
-    seed: seed for the courses and the breaks of lines.
-    forehead: number of lines across the forehead.
-    spread: part of the forehead that lines cross.
-    dip: how far lines of the forehead hang down at the midline [mm].
-    broken: how much of the lines is missing, 0 to 1.
-    frown: number of upright lines between the brows.
-    uneven: how much shallower than the deepest the other upright lines are, 0 to 1.
-    feet: number of crow's feet on each side.
-    fan: part of the fan that crow's feet fill.
-    reach: length of the longest crow's foot [mm].
-    fine: number of fine lines on the forehead for each line in `forehead`.
+    - seed: seed for the courses and the breaks of lines.
+    - forehead: number of lines across the forehead.
+    - spread: part of the forehead that lines cross.
+    - dip: how far lines of the forehead hang down at the midline [mm].
+    - broken: how much of the lines is missing, 0 to 1.
+    - frown: number of upright lines between the brows.
+    - uneven: how much shallower than the deepest the other upright lines are, 0 to 1.
+    - feet: number of crow's feet on each side.
+    - fan: part of the fan that crow's feet fill.
+    - reach: length of the longest crow's foot [mm].
+    - fine: number of fine lines on the forehead for each line in `forehead`.
     """
 
     seed: int

@@ -123,7 +123,7 @@ def _reach(ways: Floats64, solid: Floats64) -> Floats64:
     ways: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm], (k, 3).
     """
     far = np.linalg.norm(solid, axis=1)
-    sharpness = 120.0  # of the weights: higher counts fewer directions
+    sharpness = 120.0  # exponent of the weights; with more, fewer directions count
     weights = ways.reshape(-1, 3) @ (solid / far[:, None]).T
     weights -= 1.0  # in place: there are a million
     weights *= sharpness

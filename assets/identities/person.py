@@ -38,10 +38,10 @@ from .space import Identity, Sex, person_space, scores_of
 class Person(FittedHead):
     """A head with the triangles of the built-in head. It adds these fields to a fitted head:
 
-    mandible_weight, jaw_axis, anatomy: as in `Head`.
-    mirror: as in the built-in head, even if the left and the right half differ.
-    identity: weights of the modes, and features.
-    in_tone: makes the albedo (H, W, 3) for another skin tone, ITA [deg].
+    - mandible_weight, jaw_axis, anatomy: as in `Head`.
+    - mirror: as in the built-in head, even if the left and the right half differ.
+    - identity: weights of the modes, and features.
+    - in_tone: makes the albedo (H, W, 3) for another skin tone, ITA [deg].
     """
 
     mandible_weight: Floats64
@@ -141,7 +141,7 @@ def _made(identity: Identity) -> Person:
 
 
 def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
-    """Move points (n, 3) of skin or shirt below the jaw onto a neck as wide as that of a sex.
+    """Narrow women's necks: move points (n, 3) of skin or shirt below the jaw toward the axis.
 
     chin: the menton [mm], (3,).
     """

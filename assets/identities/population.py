@@ -53,11 +53,11 @@ CUTS_OF_MEN = MappingProxyType(
 class Population:
     """The population of random persons; `person_called` draws from the default.
 
-    women: fraction of women, 0 to 1.
-    ages: lowest and highest age [years].
-    tones: darkest and lightest skin tone, ITA [deg].
-    irises: frequencies of eye colours among people with very light skin.
-    cuts_of_women, cuts_of_men: frequencies of hair cuts.
+    - women: fraction of women, 0 to 1.
+    - ages: lowest and highest age [years].
+    - tones: darkest and lightest skin tone, ITA [deg].
+    - irises: frequencies of eye colours among people with very light skin.
+    - cuts_of_women, cuts_of_men: frequencies of hair cuts.
     """
 
     women: float = 0.5

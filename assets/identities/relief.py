@@ -1,4 +1,4 @@
-"""Add relief to a part of a map: heights of a person's skin above that of the built-in head."""
+"""Add relief to a part of a map: heights of a person's skin above the built-in head's skin."""
 
 from __future__ import annotations
 

@@ -70,23 +70,23 @@ class Sex(Enum):
 class Identity:
     """The numbers that describe a person's face.
 
-    sex: decides the distribution of the weights.
-    age: decides it, too [years].
-    hair: factor on the lengths of the cut.
-    cut: name of the hair cut (`CUTS` of hair.py).
-    weights: weights of the modes [standard deviations of people].
-    unevenness: added to the weights on the left side, and subtracted on the right side.
-    covered: height of the iris that the upper lid covers [mm].
-    corners: height of the mouth's corners above the centre of the lips at rest [mm].
-    brows: how far the brows are moved up [mm].
-    furrows: depth of furrows of age, relative to most people of the same age.
-    seen_lid: height of the upper lid's visible skin below the crease [mm]; negative: none shows.
-    hooding: how much less of this skin is visible at the outer corner of the eye [mm].
-    smile: how the smile differs from the built-in one.
-    larynx: how far the larynx stands out [mm].
-    sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a face
-        of usual width.
-    lines: expression lines; None: those of the built-in head.
+    - sex: decides the distribution of the weights.
+    - age: decides this distribution, too [years].
+    - hair: factor on the lengths of the cut.
+    - cut: name of the hair cut (`CUTS` of hair.py).
+    - weights: weights of the modes [standard deviations of people].
+    - unevenness: added to the weights on the left side, and subtracted on the right side.
+    - covered: height of the iris that the upper lid covers [mm].
+    - corners: height of the mouth's corners above the centre of the lips at rest [mm].
+    - brows: how far the brows are moved up [mm].
+    - furrows: depth of furrows of age, relative to most people of the same age.
+    - seen_lid: height of the upper lid's visible skin below the crease [mm]; negative: none shows.
+    - hooding: how much less of this skin is visible at the outer corner of the eye [mm].
+    - smile: how the smile differs from the built-in one.
+    - larynx: how far the larynx stands out [mm].
+    - sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a
+      face of usual width.
+    - lines: expression lines; None: those of the built-in head.
     """
 
     sex: Sex
@@ -233,8 +233,10 @@ def sample_identity(
 ) -> Identity:
     """Draw the identity of a person's number; a number always gives the same identity.
 
-    seed: the number, 0 or more. sex, age [years]: replace drawn ones. is_even: make the left and
-    the right half alike. population: from which sex, age and cut are drawn.
+    - seed: number of the person, 0 or more.
+    - sex, age: replace the drawn sex and the drawn age [years].
+    - is_even: whether the left and the right half are alike.
+    - population: population from which sex, age and cut are drawn.
     """
     random = np.random.default_rng([seed, 17])
     drawn = Sex.WOMAN if random.random() < population.women else Sex.MAN

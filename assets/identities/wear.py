@@ -26,12 +26,12 @@ from .wires import Colour, Tube, beside_head, tube
 class Frame:
     """A frame of glasses.
 
-    half_width, half_height: half the width and half the height of a lens [mm].
-    squareness: exponent of a lens' superellipse; 2 is an ellipse, more approaches a rectangle.
-    thickness: diameter of the rims [mm].
-    colour: sRGB.
-    shine: specular strength, 0 (dull) to 1 (wet). Keep it low: where rims are one or two pixels
-        wide, strong highlights break into dashes.
+    - half_width, half_height: half the width and half the height of a lens [mm].
+    - squareness: exponent of a lens' superellipse; 2 is an ellipse, more approaches a rectangle.
+    - thickness: diameter of the rims [mm].
+    - colour: sRGB.
+    - shine: specular strength, 0 (dull) to 1 (wet). Keep it low: where rims are one or two pixels
+      wide, strong highlights break into dashes.
     """
 
     half_width: float
