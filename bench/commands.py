@@ -67,15 +67,18 @@ def bench() -> None:
 )
 def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: str | None) -> None:
     """Time refinement of the face and of meshes with up to a million triangles."""
-    from . import matrices, refine, threads
+    from . import pairs as compared
+    from . import refine
 
     if pairs is not None:
         if refiner != "kahler":
             raise UserError(f"--{pairs} needs --refiner kahler; leave one of the two out")
         if pairs == "threads":
-            click.echo(threads.report(threads.measure(sizes, seconds, say_progress)))
+            found = compared.by_threads(sizes, seconds, say_progress)
+            click.echo(compared.report_of_threads(found))
         else:
-            click.echo(matrices.report(matrices.measure(sizes, seconds, say_progress)))
+            found = compared.by_matrix(sizes, seconds, say_progress)
+            click.echo(compared.report_of_matrix(found))
         return
     on_card = refiner == "kahler-gl"
     rows = refine.measure(sizes or refine.SIZES, seconds, say_progress, on_card=on_card)

@@ -272,42 +272,6 @@ def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> Floats64:
     return seconds
 
 
-class Pair(NamedTuple):
-    """The times of two ways to refine the frames of a mesh."""
-
-    mesh: str
-    method: str
-    triangles: int
-    """Triangles of the mesh before refinement."""
-    first: float
-    """Time of a frame in the first way, median [ms]."""
-    second: float
-    """The same in the second way."""
-    gain: float
-    """Ratio of the first time to the second in a pair, median of the pairs."""
-
-
-def timed_pair(
-    load: Load, method: str, calls: Sequence[Callable[[Points], object]], seconds: float
-) -> Pair:
-    """Time two calls in turn for about `seconds`, at least five pairs.
-
-    Other work on the machine slows both calls of a pair.
-    """
-
-    def run(call: Callable[[Points], object]) -> None:
-        for frame in load.frames:
-            call(frame)
-
-    both = [partial(run, call) for call in calls]
-    spent = float(interleaved(both, 1).sum())
-    fewest_pairs = 5
-    times = interleaved(both, max(round(seconds / spent), fewest_pairs))
-    first, second = (1e3 * np.median(times, axis=0) / len(load.frames)).tolist()
-    gain = float(np.median(times[:, 0] / times[:, 1]))
-    return Pair(load.name, method, len(load.faces), first, second, gain)
-
-
 def report(found: Sequence[Row]) -> str:
     """The text to print."""
     lines = [
