@@ -18,7 +18,6 @@ import numpy.typing as npt
 import scipy
 
 from risorius.geometry.closest import SurfacePoints, closest_points
-from risorius.geometry.distances import distances_between
 from risorius.geometry.read_only import make_read_only
 
 from ...geometry.arrays import Floats64, Integers32
@@ -116,7 +115,7 @@ class ThinPlateSpline:
         """Evaluate the basis functions at points (n, 3); shape (n, number of given points + 4)."""
         count = len(self._source)
         rows = np.empty((len(places), count + 4))
-        np.negative(distances_between(places, self._source), out=rows[:, :count])
+        rows[:, :count] = -scipy.spatial.distance.cdist(places, self._source)
         rows[:, count] = 1.0
         rows[:, count + 1 :] = (places - self._middle) / self._half
         return rows

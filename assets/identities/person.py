@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy
 
+from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products, vertex_normals
 
 from ...geometry.arrays import Floats32, Floats64, Integers32
@@ -24,7 +25,6 @@ from ..fitting.head import FittedHead
 from ..fitting.mouth_walls import FittedSkin, opened_jaws
 from ..fitting.organs import EYE_LANDMARKS, lids_on_eyes, place_parts
 from ..fitting.warp import Similarity, ThinPlateSpline
-from ..intersections import self_intersections
 from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of

@@ -3,21 +3,20 @@
 All modules need numpy and some numba; mesh_graph.py alone also needs scipy, and `refine/` does
 without it.
 
-arrays.py       types of arrays
-carving.py      lines carved into a height map
-closest.py      the closest points of a triangle mesh
-colour.py       screen colours (sRGB) and linear light
-directions.py   unit vectors
-distances.py    distances of all points of one set from all of another
-gradients.py    gradients of texture coordinates along a surface
-mesh_graph.py   connected pieces of a mesh, and paths along its edges
-near_pairs.py   pairs of triangles near each other
-normals.py      cross products of triangles, normals of vertices
-polylines.py    the way along polylines
-rays.py         where lines meet triangles
-read_only.py    views that cannot be written
-sides.py        the sides and edges of triangles, as pairs of vertices
-texels.py       the texels of a picture that triangles lie over
-tones.py        colours of skin, composed texel by texel
-transforms.py   points moved by matrices
+arrays.py         types of arrays
+carving.py        lines carved into a height map
+closest.py        the closest points of a triangle mesh
+colour.py         screen colours (sRGB) and linear light
+directions.py     unit vectors
+gradients.py      gradients of texture coordinates along a surface
+intersections.py  where a surface cuts through itself
+mesh_graph.py     connected pieces of a mesh, and paths along its edges
+normals.py        cross products of triangles, normals of vertices
+polylines.py      the way along polylines
+rays.py           where lines meet triangles
+read_only.py      views that cannot be written
+sides.py          the sides and edges of triangles, as pairs of vertices
+texels.py         the texels of a picture that triangles lie over
+tones.py          colours of skin, composed texel by texel
+transforms.py     points moved by matrices
 """

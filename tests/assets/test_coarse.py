@@ -6,8 +6,8 @@ import scipy
 import trimesh
 
 from risorius.assets.coarse import coarse_head
-from risorius.assets.intersections import self_intersections
 from risorius.assets.topology import boundary_loops
+from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
 

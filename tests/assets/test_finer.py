@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from risorius.assets.intersections import self_intersections
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.topology import boundary_loops, quarter
+from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
 

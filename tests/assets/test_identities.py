@@ -23,11 +23,11 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.space import person_space, scores_of
-from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import load
 from risorius.assets.norms import NORMS, measures_of
 from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.intersections import self_intersections
 from tests.assets.checks import mirror_error
 from tests.sim.poses import inverted_triangles
 

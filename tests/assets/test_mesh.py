@@ -7,8 +7,8 @@ import pytest
 import trimesh
 from numpy.linalg import norm
 
-from risorius.assets.intersections import self_intersections
 from risorius.assets.topology import boundary_loops
+from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products, vertex_normals
 from risorius.geometry.sides import sides_of
 from tests.assets import checks

@@ -1,13 +1,23 @@
-"""Pairs of triangles near each other.
+"""Places where a surface cuts through itself.
 
-Source: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D Graphics: boxes
-are sorted along one axis, and each box is compared with the boxes that begin before it ends.
+Source of `near_pairs`: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D
+Graphics: boxes are sorted along one axis, and each box is compared with the boxes that begin before
+it ends.
 """
 
 import numpy as np
+import numpy.typing as npt
 
 from ..jit import njit
-from .arrays import Floats64, Integers64
+from .arrays import Floats64, Integers32, Integers64
+from .rays import cutting
+
+
+def self_intersections(vertices: npt.NDArray[np.floating], faces: Integers32) -> Integers32:
+    """Pairs of faces (F, 3) without a common vertex that cut through each other, shape (k, 2)."""
+    corners = np.asarray(vertices, dtype=np.float64)[faces]
+    pairs = near_pairs(corners)
+    return np.asarray(pairs[cutting(corners, faces, pairs)], np.int32)
 
 
 def near_pairs(corners: Floats64) -> Integers64:
