@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.picture.stage import LEVELS
 from risorius.app.viewer.session.physics import SLEEP_DELAY
+from risorius.app.viewer.window.schedule import Schedule
 
 from .driving import NEEDS_A_SCREEN, SIZE, moved, on_screen, press_keys, settle, until, xdotool
 
@@ -56,6 +58,44 @@ def test_it_sleeps_without_input(viewer):
     assert until(viewer, lambda: viewer.schedule.is_idle)
     press_keys(viewer, "Shift_L")
     assert viewer.face.life.is_on
+
+
+def test_slow_frames_lower_the_detail_of_idle_life(viewer, monkeypatch):
+    """Idle life has fewer pixels where frames are slow, and more after they are fast again.
+
+    It had all pixels, so that a face blinked at three frames a second beside other programs.
+    """
+    coarse = LEVELS[-1]
+    assert until(viewer, lambda: viewer.schedule.is_left_alone)
+    with monkeypatch.context() as patch:
+        patch.setattr(Schedule, "spent", 0.2)
+        assert until(viewer, lambda: viewer.surface.detail == coarse)
+        assert viewer.schedule.is_left_alone
+    monkeypatch.setattr(Schedule, "spent", 0.01)
+    assert until(viewer, lambda: viewer.surface.detail != coarse)
+
+
+def test_slow_frames_seldom_draw_panels(viewer, monkeypatch):
+    """While a script plays in frames of 0.1 s, a third of them draws the panels."""
+    drawn = []
+    panels = Viewer._draw_gui
+
+    def draw(self, *, is_visible):
+        """Note whether the panels are drawn."""
+        drawn.append(is_visible)
+        panels(self, is_visible=is_visible)
+
+    press_keys(viewer, "1")
+    assert until(viewer, lambda: not viewer.schedule.is_awake)
+    monkeypatch.setattr(Schedule, "begin_frame", lambda schedule: 0.1)
+    monkeypatch.setattr(Viewer, "_draw_gui", draw)
+    viewer.session.toggle_playing()
+    viewer.session.is_looping = True
+    frame_count = 12
+    for _ in range(frame_count):
+        viewer.frame()
+    viewer.session.toggle_playing()
+    assert 3 <= drawn.count(True) <= 5
 
 
 def test_panels_lie_beside_the_picture_of_a_smaller_window(viewer):

@@ -305,11 +305,6 @@ class LevelOfDetail:
         """The detail for a scene that moves."""
         return LEVELS[self.level]
 
-    @property
-    def unhurried(self) -> render.Detail:
-        """The detail for a scene that seldom moves: software OpenGL's first level, or finer."""
-        return LEVELS[min(self.level, self.FIRST_SOFTWARE_LEVEL)]
-
     def begin_motion(self) -> None:
         """Note that a motion begins, when nobody notices a rise of the detail."""
         if self._fast >= PATIENCE_FRAMES:
@@ -319,7 +314,7 @@ class LevelOfDetail:
     def note(self, seconds: float) -> None:
         """Note the whole time of a frame of a moving scene [s]."""
         slow_seconds = 0.045  # [s] for a frame; more than 20 frames a second are promised
-        ample_seconds = 0.024  # [s] for a frame: the next finer level is then fast enough
+        ample_seconds = 0.03  # [s] for a frame: the next finer level is then fast enough
         self._slow = [*self._slow, seconds] if seconds > slow_seconds else []
         self._fast = self._fast + 1 if seconds < ample_seconds else 0
         if len(self._slow) >= PATIENCE_FRAMES:
@@ -379,9 +374,7 @@ class Painter:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
         if has_changed:
-            level = self.level_of_detail
-            is_unhurried = is_alive and state == painted
-            self._draw(level.unhurried if is_unhurried else level.detail, state)
+            self._draw(self.level_of_detail.detail, state)
         elif detail != FULL_DETAIL and self._calm_for > CALM_SECONDS and not is_alive:
             self._draw(FULL_DETAIL, state)
         return has_changed

@@ -167,7 +167,7 @@ class Viewer:
             return  # the picture stays; the cursor blinks in a line of text
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
-        if is_moving and not schedule.is_left_alone:
+        if is_moving:
             self.mode.painter.level_of_detail.note(schedule.spent)
         schedule.end_frame()
 
@@ -198,7 +198,10 @@ class Viewer:
         if not self.schedule.is_left_alone:  # idle life moves no slider
             self._panels_age += elapsed
         has_input = mode.draws_over_picture or (is_answering and not mode.mouse.is_dragging)
-        is_stale = self._panels_age >= self.refresh or size != self._panels_size
+        fluent = 1.0 / 30.0  # [s] for a frame; slower ones draw the panels in every third frame
+        most_delay = 2.5  # a playhead that is refreshed less often would seem to jump
+        age = self.refresh * min(max(elapsed / fluent, 1.0), most_delay)
+        is_stale = self._panels_age >= age or size != self._panels_size
         if is_moving and not (has_input or is_stale or self._is_scene_covered):
             return
         self.surface.resolve()
