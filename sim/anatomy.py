@@ -10,6 +10,7 @@ from .bones import Bones
 from .controls import Controls, MuscleDrive
 from .face_model import FaceModel
 from .landmarks import polyline_distance
+from .muscle_forces import LineHold
 from .state import State
 
 
@@ -24,6 +25,7 @@ class Anatomy:
         self._bones = bones
         self._drive = drive
         self._controls = controls
+        self._held: list[LineHold] | None = None  # for courses, at their first use
         self._tongue = controls.places_in_reached(("tongue_out", "tongue_up"))
         if model.tongue is not None:
             self._resting_tongue = model.space.to_head(model.tongue.rest)
@@ -44,9 +46,28 @@ class Anatomy:
         return model.space.to_head(model.tongue.bent(out, up, self._state.x, self._bones.mandible))
 
     def fibres(self) -> dict[str, list[Floats64]]:
-        """Contracted muscle fibres now, to draw: control name -> polylines (n, 3) [head units]."""
+        """Fibres as they contract without resistance: name -> polylines (n, 3) [head units]."""
         pull = self._drive.pull(self._drive.activation())
-        lines = self._model.muscles.lines(pull, self._bones.mandible, self._state)
+        return self._in_head(self._model.muscles.lines(pull, self._bones.mandible, self._state))
+
+    def courses(self) -> dict[str, list[Floats64]]:
+        """Where muscles run now, to draw: control name -> polylines (n, 3) [head units].
+
+        Insertions stay in the skin, which follows a contraction in part.
+        """
+        model = self._model
+        muscles = model.muscles
+        rest = model.skin.rest
+        if self._held is None:
+            self._held = muscles.holds_of_lines(rest)
+        x = self._state.x
+        lines = muscles.courses(self._bones.mandible, x - rest, self._held)
+        for number, ring in muscles.rings:
+            lines[muscles.names[number]].append(x[ring()])
+        return self._in_head(lines)
+
+    def _in_head(self, lines: dict[str, list[Floats64]]) -> dict[str, list[Floats64]]:
+        """Convert lines [mm] to head units, turned with the head."""
         space = self._model.space
         head = self._bones.head
         return {
@@ -59,7 +80,7 @@ class Anatomy:
         at = np.asarray(point, np.float64)[None]
         nearest = {  # the first point is repeated: a fibre may be a single point
             name: min(float(polyline_distance(at, np.vstack([x, x[-1:]]))[0]) for x in lines)
-            for name, lines in self.fibres().items()
+            for name, lines in self.courses().items()
             if lines
         }
         name = min(nearest, key=lambda each: nearest[each], default="")

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -61,6 +62,13 @@ class SkinAttachments(NamedTuple):
     holds: Attachments  # by muscle
     pulls: Attachments  # by line, places in samples
     carries: Attachments  # by line, places in points
+
+
+class LineHold(NamedTuple):
+    """The skin that hangs on a line, for drawing; empty if none does."""
+
+    vertices: Unsigned32  # (n,)
+    weight: Floats64  # (FIBRE_POINTS, n) of each vertex at the line's points, with sum 1
 
 
 @dataclass(frozen=True)
@@ -116,6 +124,42 @@ class MuscleForces:
         for muscle, ring in self.rings:
             lines[self.names[muscle]].append(state.x[ring()])
         return lines
+
+    def courses(
+        self, mandible: RigidMotion, moved_skin: Floats64, held: Sequence[LineHold]
+    ) -> dict[str, list[Floats64]]:
+        """Polylines [mm] of linear muscles where they run now: from bone to the skin they move.
+
+        moved_skin: displacement of the skin [mm], shape (V, 3). held: see `holds_of_lines`.
+        Contraction alone would end before the skin, which resists.
+        """
+        lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
+        rings = dict(self.rings)
+        for b, muscle in enumerate(self.bundle.muscle):
+            if muscle in rings:
+                continue
+            points = self.bundle.points[b]
+            bone = self.bundle.mandible[b][:, None] * mandible.displacements(points)
+            vertices, weight = held[b]
+            arc = arc_lengths(points)
+            away = np.abs(arc / max(arc[-1], 1e-9) - self.bundle.fixed_at[b])
+            share = (away / max(away.max(), 1e-9))[:, None] * (len(vertices) > 0)
+            moved = points + bone + share * (weight @ moved_skin[vertices] - bone)
+            lines[self.names[muscle]].append(moved)
+        return lines
+
+    def holds_of_lines(self, rest: Floats64) -> list[LineHold]:
+        """Return the skin at each line's points, near them more than far; `rest`: (V, 3) [mm]."""
+        pulls = self.skin.pulls
+        reach = 3.0  # [mm] beyond the nearest vertex
+        held = list[LineHold]()
+        for points, own in zip(self.bundle.points, pairwise(pulls.rows.tolist()), strict=True):
+            vertices = pulls.vertex[slice(*own)]
+            squared = np.square(points[:, None] - rest[vertices]).sum(axis=-1)
+            nearest = squared.min(axis=1, keepdims=True, initial=np.inf if len(vertices) else 0.0)
+            weight = pulls.weight[slice(*own)] * np.exp((nearest - squared) / (nearest + reach**2))
+            held.append(LineHold(vertices, weight / weight.sum(axis=1, keepdims=True)))
+        return held
 
 
 def build_muscle_forces(

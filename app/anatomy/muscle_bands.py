@@ -16,6 +16,7 @@ import numpy as np
 import scipy
 
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.normals import vertex_normals
@@ -140,6 +141,11 @@ class Muscles:
             below = np.minimum(deep, np.maximum(bone_depth - thick, 0.0))
             below = np.maximum(below, thick + 1.0)  # with 1 mm of skin on top
             rails = rails - (outside + below)[..., None] * normal
+        for _ in range(2):  # heights from a few vertices are coarse where skin curves, on noses
+            over_skin = skin.heights(_sections(rails, normal, thick), normal[1])
+            deeper = _widened(np.maximum(over_skin.max(axis=-1) + 0.5, 0.0))  # 0.5 mm of skin
+            rails = rails - deeper[..., None] * normal
+            below = below + deeper
         self._rest = rails
         self._outward = normal
         self._below = below[..., None]
@@ -186,13 +192,7 @@ class Muscles:
         swollen = 1.0 + (swollen[:, None] - 1.0) * ARCH
         rails = rails[1] + swollen[..., None] ** 0.35 * (rails - rails[1])
         thick = _thickness(swollen)
-        angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
-        a = np.cos(angle)
-        blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
-        middle = np.tensordot(rails, blend, (0, 0))
-        outward = np.tensordot(normal, blend, (0, 0))
-        raised = outward * thick[:, :, None, None] * np.sin(angle)
-        grid = (middle + raised).swapaxes(2, 3)
+        grid = _sections(rails, normal, thick)
         sums = face.simulation.controls.sums
         active = [max((sums[name] for name in own), default=0.0) for own in self._controls]
         self._set(grid, np.array(active))
@@ -264,6 +264,19 @@ class _Skin:
         normal = unit_vectors(np.einsum("...k,...kc->...c", weight, normals))
         return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
 
+    def heights(self, points: Floats64, out: Floats64) -> Floats64:
+        """Return the heights of sections (b, ROWS, AROUND, 3) above the nearest triangles.
+
+        out: outward directions of the bands, (b, ROWS, 3), which the triangles face.
+        """
+        facing = np.broadcast_to(out[:, :, None], points.shape).reshape(-1, 3)
+        other_side = 20.0  # [mm] that a triangle which faces the other way seems farther
+        flat = points.reshape(-1, 3)
+        near = closest_points(flat, self.x, self._faces, facing, other_side)
+        off = flat - near.interpolate(self.x)
+        height: Floats64 = np.einsum("nc,nc->n", off, unit_vectors(near.interpolate(self.normals)))
+        return height.reshape(points.shape[:-1])
+
     def _near(
         self, points: Floats64, out: Floats64, count: int = NEAR, reach: float = 0.35
     ) -> tuple[Any, Floats64]:
@@ -293,6 +306,29 @@ class _Skin:
         rows = np.repeat(np.arange(alone.size), near.shape[-1])
         place = rows, near.ravel()
         return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, len(self.x))).tocsr()
+
+
+def _sections(rails: Floats64, normal: Floats64, thick: Floats64) -> Floats64:
+    """Return the elliptic sections of bands, (b, ROWS, AROUND, 3).
+
+    rails, normal: edges and middles with their outward directions, (3, b, ROWS, 3). thick: half the
+    thickness [mm], (b, ROWS).
+    """
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    a = np.cos(angle)
+    blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
+    middle = np.tensordot(rails, blend, (0, 0))
+    outward = np.tensordot(normal, blend, (0, 0))
+    sections: Floats64 = middle + outward * thick[:, :, None, None] * np.sin(angle)
+    return sections.swapaxes(2, 3)
+
+
+def _widened(depths: Floats64) -> Floats64:
+    """Return depths along bands (b, ROWS) without steps, and nowhere smaller."""
+    padded = np.pad(depths, ((0, 0), (2, 2)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 3, axis=1).max(axis=-1)
+    smooth: Floats64 = 0.25 * (windows[:, :-2] + 2.0 * windows[:, 1:-1] + windows[:, 2:])
+    return smooth
 
 
 def _lip_height(marks: Floats64) -> Floats64:

@@ -17,6 +17,8 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit_head
+from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import vertex_normals
 from tests.heads import user_head
 
 from .command_line import risorius
@@ -258,3 +260,20 @@ def test_bands_move_with_the_skin_and_leave_the_mouth_open(pose):
     lower = np.interp(x, *inner[[0, 7, 6, 5, 4]].T)
     is_across = (lower + 1.0 < y) & (y < upper - 1.0)
     assert not is_across.any()
+
+
+@pytest.mark.parametrize("pose", [{}, {"AU9": 1.0}, {"AU39": 1.0}])
+def test_muscles_of_the_nose_lie_below_its_skin(pose):
+    """No part of a muscle across the nose is outside its skin; one lay up to 1.4 mm outside."""
+    scene = posed(FaceScene(), **pose)
+    face = scene.face
+    muscles = Muscles.of(face)
+    bands = [number for number, (name, _) in enumerate(muscles.names) if "nasalis" in name]
+    assert len(bands) >= 4
+    points = muscles.vertices.reshape(-1, ROWS * AROUND, 3)[bands].reshape(-1, 3)
+    skin = face.simulation.positions
+    found = closest_points(points, skin, face.simulation.faces)
+    normals = vertex_normals(skin, face.simulation.faces)
+    off = points - found.interpolate(skin)
+    height = np.einsum("nc,nc->n", off, found.interpolate(normals))
+    assert height.max() < 0.0

@@ -343,6 +343,37 @@ def test_fibres_shorten(simulation):
         assert _length(after) < 0.8 * _length(before)
 
 
+def test_courses_stay_in_the_skin(simulation):
+    """Where a muscle runs, its insertion stays in the skin; alone, the fibre shortens further.
+
+    The window drew the latter, which ended in the middle of the cheek.
+    """
+    major = "zygomaticus_major_left"
+    relaxed = simulation.anatomy.courses()
+    for name, lines in simulation.anatomy.fibres().items():
+        np.testing.assert_allclose(relaxed[name], lines, atol=1e-9)
+    moved = settled_displacement(simulation, {major: 1.0})
+    (*_, end) = relaxed[major][0]
+    skin = moved[norm(simulation.rest_positions - end, axis=1).argmin()]
+    course = simulation.anatomy.courses()[major][0]
+    assert norm(course[-1] - end - skin) < 1.5
+    assert norm(simulation.anatomy.fibres()[major][0][-1] - end - skin) > 5.0
+    np.testing.assert_allclose(course[0], relaxed[major][0][0], atol=0.1)
+
+
+def test_courses_follow_the_lips_apart(simulation):
+    """Over an open jaw, muscles of the lower lip go down with it, those of the upper stay."""
+    relaxed = simulation.anatomy.courses()
+    settled_displacement(simulation, {"jaw_open": 1.0})
+    now = simulation.anatomy.courses()
+    falls = {
+        name: float(now[name][0][-1][1] - relaxed[name][0][-1][1])
+        for name in ("depressor_labii_inferioris_left", "levator_labii_superioris_left")
+    }
+    assert falls["depressor_labii_inferioris_left"] < -10.0
+    assert abs(falls["levator_labii_superioris_left"]) < 4.0
+
+
 def _length(line):
     return float(norm(np.diff(line, axis=0), axis=1).sum())
 

@@ -235,7 +235,7 @@ def pointed_lines(
     opacity of the muscle with the largest share.
     """
     face = scene.face if shares else None
-    fibres = {} if face is None else face.simulation.anatomy.fibres()
+    fibres = {} if face is None else face.simulation.anatomy.courses()
     seen: dict[str, float] = {}
     for name, share in shares.items():
         for side in (name, f"{name}_left", f"{name}_right"):
