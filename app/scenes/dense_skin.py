@@ -7,6 +7,7 @@ split, because the embedding evaluates the smooth surface at each vertex.
 from __future__ import annotations
 
 import copy
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
+if TYPE_CHECKING:
+    from risorius.refine import Embedding
+
 
 class DenseSkin:
     """The vertices of a skin that a simulation with fewer vertices moves.
@@ -22,16 +26,22 @@ class DenseSkin:
     rest_positions: vertices at rest [mm], shape (V, 3), read only.
     """
 
-    def __init__(self, vertices: Floats64, faces: Integers32, simulation: sim.Simulation) -> None:
-        """Bind vertices at rest (V, 3), with triangles (F, 3), to the mesh of `simulation`."""
-        from risorius.refine import Embedding  # few heads need it
+    def __init__(
+        self,
+        vertices: Floats64,
+        faces: Integers32,
+        simulation: sim.Simulation,
+        lips: tuple[Integers32, Integers32] | None = None,
+    ) -> None:
+        """Bind vertices at rest (V, 3), with triangles (F, 3), to the mesh of `simulation`.
 
+        lips: the lip of each vertex, and of each simulated vertex: 1 the upper, -1 the lower, 0
+        none; shapes (V,) and (K,).
+        """
         self.rest_positions = vertices
         # Normals prevent that vertices of the upper lip are bound to the lower lip.
         normals = _smooth_normals(vertices, faces)
-        self._embedding = Embedding(
-            simulation.faces, simulation.rest_positions, vertices, normals=normals
-        )
+        self._embedding = _embedded(vertices, normals, simulation, lips)
         self._positions = vertices.copy()
         self._shown = read_only(self._positions)
         self._wanted: Floats64 | None = None  # simulated vertices to follow at the next read
@@ -63,6 +73,43 @@ class DenseSkin:
         twin._positions = self._positions.copy()
         twin._shown = read_only(twin._positions)
         return twin
+
+
+def _embedded(
+    vertices: Floats64,
+    normals: Floats64,
+    simulation: sim.Simulation,
+    lips: tuple[Integers32, Integers32] | None,
+) -> Embedding:
+    """Bind vertices (V, 3) to the nearest simulated triangles that are not on the other lip.
+
+    Lips that were sealed face the same way, so their normals do not tell them apart.
+    """
+    from risorius.refine import Embedding  # few heads need it
+
+    coarse = (simulation.faces, simulation.rest_positions)
+    found = Embedding(*coarse, vertices, normals=normals)
+    if lips is None:
+        return found
+    own, simulated = lips
+    triangles = found.triangles.copy()
+    weights = found.weights.copy()
+    for side in (1, -1):
+        is_other_lip = (simulated == -side)[simulation.faces].any(axis=1)
+        wrong = np.flatnonzero((own == side) & is_other_lip[triangles])
+        if len(wrong):
+            better = Embedding(
+                *coarse,
+                vertices[wrong],
+                normals=normals[wrong],
+                labels=np.zeros(len(wrong), np.int32),
+                face_labels=is_other_lip.astype(np.int32),
+            )
+            triangles[wrong] = better.triangles
+            weights[wrong] = better.weights
+    if np.array_equal(triangles, found.triangles):
+        return found
+    return Embedding(*coarse, vertices, normals=normals, places=(triangles, weights))
 
 
 def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:

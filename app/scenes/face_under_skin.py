@@ -15,6 +15,7 @@ import numpy as np
 from risorius import assets, sim
 from risorius.assets.annotation import Annotation, annotation_of
 from risorius.assets.fitting import FittedHead, SimulatedHead
+from risorius.assets.fitting.own_lip import lip_sides
 from risorius.geometry.arrays import Floats64
 
 from .dense_skin import DenseSkin
@@ -35,7 +36,12 @@ class Face:
         simulation = sim.create(simplified or head)
         if simplified is None:
             return cls(head, simulation)
-        return cls(head, simulation, DenseSkin(head.vertices, head.faces, simulation))
+        own, coarse = (
+            lip_sides(each.vertices, each.faces, each.landmarks) for each in (head, simplified)
+        )
+        return cls(
+            head, simulation, DenseSkin(head.vertices, head.faces, simulation, (own, coarse))
+        )
 
     def clone(self) -> Face:
         """Return a copy of the face at rest, which moves independently."""

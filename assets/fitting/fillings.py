@@ -1,7 +1,9 @@
 """Find triangles that fill the mouth or the eyes of a mesh, so that they can be removed.
 
-A filling is a polygon inside the landmarks of an opening. It is cut into triangles, and all its
-vertices lie on the opening's edge. The skin loses these triangles and keeps their vertices.
+A filling lies inside the landmarks of an opening. In masks it is a polygon: it is cut into
+triangles, and all its vertices lie on the opening's edge. In scans the front of an eyeball is part
+of the skin: there it is a sheet between the lids. The skin loses these triangles and keeps their
+vertices.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from ...geometry.sides import sides_of
 from ..loading import load
 from ..meshes import Mesh
 from .face_place import placed
+from .mesh_validation import COVER_DEPTH, covering
 
 # Landmarks around each opening: the upper chain from corner to corner, then the lower chain back.
 OPENINGS = {
@@ -59,6 +62,8 @@ def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling 
         corners = [number for chain in chains for number in chain[:-1]]
         upper, lower = (_smooth(points[list(chain)]) for chain in chains)
         found = own[_filling(vertices, mesh.faces[own], points[corners], upper, lower)]
+        if not len(found) and name.endswith("eye"):
+            found = own[_sheet(vertices, mesh.faces[own], points[corners], upper, lower)]
         if len(found):
             openings.append(name)
             triangles.append(found)
@@ -105,6 +110,62 @@ def _filling(
             off = scipy.spatial.cKDTree(border).query(around)[0]
             return found if off.max() < 0.2 * width else none
     return none
+
+
+def _sheet(
+    vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
+) -> Integers:
+    """The triangles of a sheet between the lids that covers an eye; see `_filling`."""
+    none = np.zeros(0, np.int64)
+    edge = np.concatenate([upper[:-1], lower[:-1]])
+    centre = around.mean(axis=0)
+    width = np.linalg.norm(upper[-1] - upper[0])
+    least_height = 0.1  # of the width; lids that are nearly shut are no opening
+    if (upper - lower[::-1])[:, 1].max() < least_height * width:
+        return none
+    corners = vertices[faces]
+    if not covering(corners, centre).any():
+        return none
+    middles = corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    turned = 1.0 if normals[covering(corners, centre), 2].mean() > 0.0 else -1.0
+    is_near = (turned * normals[:, 2] > 0.0) & (middles[:, 2] > centre[2] - COVER_DEPTH)
+    near = np.flatnonzero(is_near & (np.linalg.norm(middles - centre, axis=1) < 0.6 * width))
+    for share in (1.0, 0.9, 0.8):  # of the curve's size, because margins of lids are rounded
+        shrunk = centre + share * (edge - centre)
+        inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
+        found = _without_teeth(faces, inside)
+        if _is_disc(faces[found]):
+            border = vertices[np.unique(faces[found])]
+            off = scipy.spatial.cKDTree(border).query(around)[0]
+            return found if off.max() < 0.2 * width else none
+    return none
+
+
+def _without_teeth(faces: Integers32, found: Integers) -> Integers:
+    """The largest connected part of a sheet, less triangles that hang on it by one side."""
+    most_passes = 5
+    for _ in range(most_passes):
+        sides = np.sort(sides_of(faces[found]), axis=1)
+        _, number, uses = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+        shared = (uses[number.ravel()] == 2).reshape(3, -1).sum(axis=0)
+        if (shared > 1).all():
+            break
+        found = found[shared > 1]
+    if not len(found):
+        return found
+    piece = pieces_of(faces[found], int(faces.max()) + 1)[faces[found, 0]]
+    return np.asarray(found[piece == np.bincount(piece).argmax()])
+
+
+def _is_disc(faces: Integers32) -> bool:
+    """Whether triangles form one sheet with one border, which meets no vertex twice."""
+    if not len(faces):
+        return False
+    sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
+    border = sides[uses == 1]
+    is_simple = len(border) == len(np.unique(border))
+    return is_simple and len(np.unique(faces)) - len(sides) + len(faces) == 1
 
 
 def _is_polygon(faces: Integers32) -> bool:

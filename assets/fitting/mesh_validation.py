@@ -24,6 +24,8 @@ FEWEST_TRIANGLES = 300  # chosen; with fewer, eyes and mouth have no shape
 # Skin joins two lips, or two lids, if the shortest path between them is shorter than this fraction
 # of the path around a corner of the opening. The path through a bag behind them is longer.
 JOINED_SHARE = 0.6
+# Skin down to this depth [mm] behind the lids' edges covers an eye; sockets are deeper.
+COVER_DEPTH = 6.0
 # Pairs of landmarks on the upper and the lower lid; landmarks at the corners of the eyes.
 LID_PAIRS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}
@@ -182,7 +184,7 @@ def check_openings(skin: SkinPiece) -> None:
     corners = skin.vertices[skin.faces]
     for side, pairs in LID_PAIRS.items():
         middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
-        if _is_covered(corners, middle) and not _is_slit(skin, side):
+        if is_covered(corners, middle) and not _is_slit(skin, side):
             raise CoveredError(
                 f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
                 f"{pairs[0][1]}; cut the mesh open between the lids (a head with its eyes open)"
@@ -254,12 +256,15 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     )
 
 
-def _is_covered(corners: Floats64, point: Floats64) -> bool:
+def is_covered(corners: Floats64, point: Floats64) -> bool:
     """Whether a ray from the front meets a triangle near a point (3,); corners: (F, 3, 3) [mm]."""
+    return bool(covering(corners, point).any())
+
+
+def covering(corners: Floats64, point: Floats64) -> Flags:
+    """Return flags of the triangles (F, 3, 3) that cover a point (3,) [mm], shape (F,)."""
     edges = np.roll(corners, -1, axis=1) - corners
     to = point - corners
     turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
     hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    # [mm] behind the lids' edges, up to which skin covers the eye; sockets are deeper.
-    cover_depth = 6.0
-    return bool((corners[hit, :, 2].mean(axis=1) > point[2] - cover_depth).any())
+    return np.asarray(hit & (corners[:, :, 2].mean(axis=1) > point[2] - COVER_DEPTH))

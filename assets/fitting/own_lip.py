@@ -26,8 +26,8 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
     3). normals: unit normals of the skin's vertices.
     """
     found = nearest_on(skin.vertices, normals, warped, known.faces)
-    own = _lip_sides(skin.vertices, skin.faces, skin.landmarks)
-    sides = _lip_sides(known.vertices, known.faces, known.landmarks)
+    own = lip_sides(skin.vertices, skin.faces, skin.landmarks)
+    sides = lip_sides(known.vertices, known.faces, known.landmarks)
     for side in (1, -1):
         is_other_lip = (sides == -side)[known.faces].any(axis=1)
         is_wrong = (own == side) & is_other_lip[found.triangles]
@@ -38,7 +38,7 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
     return found
 
 
-def _lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
+def lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
     """Return 1 for vertices of the upper lip, -1 for those of the lower lip, else 0; (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
     ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]

@@ -1,5 +1,7 @@
 """Heads with too many triangles: a simplified mesh is simulated, and the file's mesh follows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.linalg import norm
@@ -11,12 +13,14 @@ from risorius.app.scenes import FaceScene
 from risorius.app.scenes.dense_skin import DenseSkin
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit, simplified_head, simplifying
+from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.fitting.painting import sampled
 from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.sides import sides_of
 from risorius.refine import Embedding
-from tests.heads import user_head
+from tests.heads import sealed, user_head
 
 
 @pytest.fixture(scope="module")
@@ -133,6 +137,25 @@ def test_lips_keep_their_own_vertices(dense):
     assert growth(dense.faces, dense.positions, dense.rest_positions) < among
 
 
+def test_lips_of_a_sealed_scan_part_without_strands(monkeypatch):
+    """Lips that were one surface face the same way, but no vertex follows the other lip."""
+    monkeypatch.setattr(simplifying, "MOST_SIMULATED", 4000)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED", 2500)
+    shut = sealed()
+    mesh = halved(shut.mesh)
+    rough = np.random.default_rng(2).normal(0.0, 0.3, mesh.vertices.shape)  # [mm]
+    mesh = replace(mesh, vertices=mesh.vertices + rough)
+    cut = lip_cut(mesh, shut.landmarks, mesh.vertices[shut.landmarks])
+    scene = FaceScene(fit(cut.applied(mesh), cut.landmarks, points=cut.points))
+    assert len(scene.simulation.faces) < len(scene.faces)
+    scene.pose({"jaw_open": 1.0})
+    for _ in range(30):
+        scene.step(1.0 / 60.0)
+    simulated = scene.simulation
+    among = growth(simulated.faces, simulated.positions, simulated.rest_positions)
+    assert growth(scene.faces, scene.positions, scene.rest_positions) < 1.2 * among
+
+
 def test_a_fold_of_the_scan_stays_on_its_own_side():
     """A vertex in a fold of a scan may face the wrong way, but moves with its neighbours."""
     sheet, triangles = make_grid(4, 4, 8.0)
@@ -152,6 +175,19 @@ def test_a_fold_of_the_scan_stays_on_its_own_side():
     apart = np.repeat([[0.0, 0.0, -5.0], [0.0, 0.0, 5.0]], len(sheet), axis=0)
     skin.follow(simulation.rest_positions + apart)
     assert_allclose(skin.positions, fine + np.array([0.0, 0.0, 5.0]), atol=1e-6)
+
+
+def halved(mesh):
+    """The mesh with each edge halved, which makes four triangles of each."""
+    sides = np.sort(sides_of(mesh.faces), axis=1)
+    edges, number = np.unique(sides, axis=0, return_inverse=True)
+    a, b, c = mesh.faces.T
+    ab, bc, ca = len(mesh.vertices) + number.reshape(3, -1)
+    faces = np.vstack(
+        [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    )
+    middles = mesh.vertices[edges].mean(axis=1)
+    return Mesh(np.vstack([mesh.vertices, middles]), faces.astype(np.int32))
 
 
 def growth(faces, positions, rest):

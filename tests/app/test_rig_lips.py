@@ -13,7 +13,7 @@ from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
-from ..heads import METRES, UserHead, closed, masked, sealed
+from ..heads import METRES, UserHead, closed, masked, nearly_shut, sealed
 from .command_line import succeeded
 from .glb_player import Player
 
@@ -117,9 +117,10 @@ def test_skin_across_an_open_mouth_is_not_cut(shut):
 
 
 def test_a_fault_of_a_cut_head_names_the_cut(shut, tmp_path):
-    """Skin over an eye, found after the lips were cut, is reported together with the cut."""
+    """Skin over a narrow eye, found after the lips were cut, is reported together with the cut."""
     landmarks = shut.landmarks
-    covered = UserHead(closed(shut.mesh, landmarks[42:48]), landmarks)
+    eye = landmarks[42:48]
+    covered = UserHead(closed(nearly_shut(shut.mesh, eye), eye), landmarks)
     with pytest.raises(AssetError, match=r"lips were sealed: .*; but the left eye has no opening"):
         fit_head(*covered.write(tmp_path))
 

@@ -12,7 +12,7 @@ from risorius.assets.fitting import fit_head
 from risorius.assets.fitting.fillings import filling_of
 from risorius.assets.meshes import read_mesh
 
-from ..heads import SHIFT, TURN, UserHead, closed, filled, masked
+from ..heads import SHIFT, TURN, UserHead, closed, filled, masked, nearly_shut
 
 COUNT = 62  # triangles of `masked` across its mouth and eyes, the last of its list
 
@@ -81,12 +81,33 @@ def test_a_picture_stays_without_the_triangles(mask, tmp_path):
     assert len(opened.texture.picture) == len(opened.faces)
 
 
-def test_skin_with_points_of_its_own_is_no_filling(mask, tmp_path):
-    """An eye covered by a fan around an added vertex is refused by name."""
+def test_an_eye_that_is_part_of_the_skin_is_opened(mask, tmp_path):
+    """In a scan, the front of an eyeball is skin between the lids; it is left out."""
     landmarks = mask.landmarks
     opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
     covered = closed(filled(opened, landmarks[60:68]), landmarks[42:48])
-    assert filling_of(covered, landmarks, covered.vertices[landmarks]).openings == ("mouth",)
+    bulged = covered.vertices + 0.0
+    bulged[-1, 2] += 3.0
+    covered = replace(covered, vertices=bulged)
+    found = filling_of(covered, landmarks, covered.vertices[landmarks])
+    assert found.openings == ("mouth", "left eye")
+    fan = np.flatnonzero((covered.faces == len(covered.vertices) - 1).any(axis=1))
+    assert np.isin(fan, found.triangles).all()
+    head = fit_head(*UserHead(covered, landmarks).write(tmp_path))
+    simulation = sim.create(head)
+    simulation.controls.set("eyeBlinkLeft", 1.0)
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    upper, lower = simulation.positions[head.landmarks[[[43, 44], [47, 46]]]]
+    assert np.abs(upper - lower)[:, 1].max() < 2.0
+
+
+def test_skin_over_a_narrow_eye_is_no_filling(mask, tmp_path):
+    """Skin over lids that are nearly shut is refused by name of the eye."""
+    landmarks = mask.landmarks
+    opened = mask.mesh.without(np.arange(len(mask.mesh.faces))[-COUNT:])
+    eye = landmarks[42:48]
+    covered = closed(filled(nearly_shut(opened, eye), landmarks[60:68]), eye)
     path, marks = UserHead(covered, landmarks).write(tmp_path)
     assert json.loads(marks.read_text())
     with pytest.raises(AssetError, match="the left eye has no opening"):
