@@ -150,6 +150,8 @@ class Wrinkles:
       all.
     - folds: the fraction of `resting` that is anatomy, such as folds of lids, 0 to 1, shape (V,);
       (1,) for all. It also shows in a face that is drawn without wrinkles.
+    - lids: the fraction of skin that is shaded because lids are open, 0 to 1, shape (V,); (1,) for
+      all.
     """
 
     map: Image
@@ -157,6 +159,7 @@ class Wrinkles:
     across: Floats32
     resting: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
     folds: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
+    lids: Floats32 = field(default_factory=lambda: np.zeros(1, np.float32))
 
     def __post_init__(self) -> None:
         make_read_only(self)

@@ -152,7 +152,7 @@ class MeshBuffers:
         """Upload the triangles into a second buffer, in which those with bumps come first."""
         parts = self.mesh.triangles
         amounts = self.mesh.vertices[:, BUMPS]
-        is_shown = (amounts[:, 0] > 0.0) | (amounts[:, 1] > 0.0)
+        is_shown = (amounts != 0.0).any(axis=1)
         is_bumped = is_shown[parts].any(axis=1)
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count

@@ -28,7 +28,8 @@ Points = npt.NDArray[np.float64]
 class Wrinkling(NamedTuple):
     """Wrinkles of the skin in one frame: amounts, and directions of furrows.
 
-    amounts: depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2).
+    amounts: depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2); below 0, to -1,
+        where skin of a lid is stretched, and its shade is gone.
     gradients: gradients of texture coordinates u and v along the skin [1/mm], shape (U, 6).
     """
 
@@ -49,7 +50,8 @@ class Compression:
         whole = np.minimum(self._readiness, 1.0)
         self._resting = wrinkles.resting[:, None] * whole
         self._folds = wrinkles.folds[:, None] * whole
-        self._has_folds = bool(self._folds.any())
+        self._lids = wrinkles.lids[:, None] * whole
+        self._has_folds = bool(self._folds.any() or self._lids.any())
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def measure(self, positions: Points, strength: float = 1.0) -> Wrinkling | None:
@@ -65,7 +67,7 @@ class Compression:
         return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points, strength: float = 1.0) -> Amounts:
-        """Return the depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2).
+        """Return the depth of furrows in both slots of each vertex, -1 to 1, shape (V, 2).
 
         The amount begins and ends smoothly, so furrows do not pop up. strength: factor on all
         furrows but folds, which are anatomy.
@@ -83,4 +85,7 @@ class Compression:
         shown = np.maximum(amounts, self._resting * left)
         if strength != 1.0:
             shown = np.maximum(strength * shown, self._folds * left)
+        gained = np.square(np.minimum(lost, 0.0))
+        half_open_gain = 0.4  # gain of length of a lid that is half shut
+        shown -= self._lids * gained / (gained + half_open_gain**2)
         return np.asarray(shown, np.float32)

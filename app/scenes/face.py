@@ -10,7 +10,7 @@ import numpy as np
 
 from risorius import assets
 from risorius.assets.fitting import FittedHead
-from risorius.assets.identities import Person, built_in_hair, recoloured
+from risorius.assets.identities import Person, built_in_hair, recoloured, with_lids
 from risorius.assets.model import MASK
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.read_only import read_only
@@ -148,14 +148,15 @@ def _images_of(head: assets.Head | FittedHead) -> SkinImages:
     """Return the images on the skin of a head."""
     person = head if isinstance(head, Person) else None
     in_tone = None if person is None else person.in_tone
+    is_built_in = isinstance(head, assets.Head)
     return SkinImages(
         uv=head.uv,
         face_uv=head.face_uv,
         albedo=head.albedo,
-        in_tone=recoloured if isinstance(head, assets.Head) else in_tone,
+        in_tone=recoloured if is_built_in else in_tone,
         ambient_occlusion=head.ambient_occlusion,
         fine_shape=head.fine_shape,
-        wrinkles=head.wrinkles,
+        wrinkles=with_lids(head.wrinkles) if is_built_in and head.wrinkles else head.wrinkles,
         fade=head.fade() if isinstance(head, FittedHead) else None,
     )
 

@@ -10,6 +10,7 @@ from ..model import GLASSES, MASK
 from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
 from .hair import HAIR
+from .lids import with_lids
 from .mask import MASKS
 from .named import (
     NAMED,
@@ -57,4 +58,5 @@ __all__ = [
     "recoloured",
     "sample_identity",
     "wearing",
+    "with_lids",
 ]

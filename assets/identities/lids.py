@@ -45,9 +45,15 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
         steep = 127.0 * size / wrinkles.steepest
         add_to(near, more * np.array([steep, steep, 255.0 * darkest], np.float32))
     found.flags.writeable = False
-    across, folds = _yielding()
-    resting = np.maximum(wrinkles.resting, folds)
-    return replace(wrinkles, map=found, across=across, resting=resting, folds=folds)
+    resting = np.maximum(wrinkles.resting, _yielding()[1])
+    folded = replace(wrinkles, map=found, resting=resting, folds=_yielding()[1])
+    return with_lids(folded)
+
+
+def with_lids(wrinkles: Wrinkles) -> Wrinkles:
+    """Wrinkles whose upper lids yield to stretch: those of the built-in head, or of a person."""
+    across, lids = _yielding()
+    return replace(wrinkles, across=across, lids=lids)
 
 
 @lru_cache(maxsize=1)

@@ -42,7 +42,7 @@ Bump bump_at(vec2 uv, vec2 amounts, bool is_front) {
 #endif
 #if defined(BUMPS)
     vec4 texel = texture(bumps_map, uv);
-    float amount = share * bumps_strength * mix(amounts.x, amounts.y, texel.a);
+    float amount = share * bumps_strength * max(mix(amounts.x, amounts.y, texel.a), 0.0);
     bump.slope = amount * slopes(texel.rg, bumps_slope);
     bump.depth = amount * texel.b;
 #endif

@@ -310,6 +310,8 @@ const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 layout(location = 0) out vec4 pixel_colour;
 layout(location = 1) out vec4 pixel_surface;
 
+const vec3 THIN = vec3(1.06, 0.97, 0.96);  // of thin skin's albedo: muscle shows through
+
 // 1 where all ambient light arrives.
 float ambient_occlusion = 1.0;
 
@@ -411,6 +413,12 @@ void main() {
 #if defined(FIBRES)
     Strand strand = strand_at(surface.fibre);
     normal = stranded(normal, surface.position, surface.fibre.x, strand.slope);
+#endif
+#if defined(BUMPS)
+    // Amounts are below 0 where a shut lid stretches its skin, which is thin and no longer in a fold.
+    float stretched = max(-max(surface.bump_amounts.x, surface.bump_amounts.y), 0.0);
+    ambient_occlusion = mix(ambient_occlusion, 1.0, stretched);
+    front *= mix(vec3(1.0), THIN, stretched);
 #endif
     float shade = ambient_occlusion * ambient_occlusion;
     Lit lit = studio(normal, to_eye, shade * shade * shade, subsurface, gloss, sharpness);

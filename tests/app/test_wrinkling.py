@@ -111,6 +111,26 @@ def test_folds_of_lids_flatten_when_the_eyes_shut():
         assert shut[creased].max() < 0.3
 
 
+def test_a_shut_lid_loses_the_shade_of_its_fold(scene, wrinkling):
+    """The lids of a blink on the built-in head are brighter and redder than in their fold.
+
+    They were grey and flat, since they kept the shade that they have while the eye is open.
+    """
+    lids = np.concatenate([load("head").rings[f"eye_3_{side}"][3:8] for side in ("left", "right")])
+    assert amounts(scene, wrinkling, blink=1.0)[lids].max() < -0.8
+    with Capture(scene, CaptureOptions((480, 480), camera="0,0,2")) as capture:
+        view, projection = capture.camera.view_matrix(), capture.camera.projection_matrix(1.0)
+        matrix = np.array(view) @ np.array(projection)
+        places = scene.positions[lids] @ matrix[:3] + matrix[3]
+        columns, rows = (240.0 * (1.0 + places[:, :2] / places[:, 3:] * (1.0, -1.0))).astype(int).T
+        shut = capture.draw_image()[rows, columns].astype(np.float64)
+        capture.pipeline._compression._lids[:] = 0.0
+        folded = capture.draw_image()[rows, columns].astype(np.float64)
+    assert (shut > folded).all()
+    assert (shut[:, 0] > 1.05 * folded[:, 0]).all()
+    assert (shut[:, 0] / shut[:, 2] > folded[:, 0] / folded[:, 2]).all()
+
+
 def test_folds_of_lids_stay_without_wrinkles():
     """Folds of lids stay when wrinkles of motion and age have strength 0."""
     person = person_called("maria")
@@ -132,7 +152,7 @@ def test_folds_of_lids_stay_without_wrinkles():
 def test_a_young_person_looks_alike_without_wrinkles():
     """With and without wrinkles, the picture of a young person at rest is the same.
 
-    Person 8 has folds but no furrows. The built-in head has neither, so nothing is measured.
+    Person 8 has folds but no furrows. The built-in head has neither: only lids of it give.
     """
     scene = FaceScene(person_called(8))
     pictures = []
@@ -143,4 +163,4 @@ def test_a_young_person_looks_alike_without_wrinkles():
             assert capture.viewports[0].drawn.wrinkles
     np.testing.assert_array_equal(*pictures)
     plain = FaceScene()
-    assert Compression(plain).measure(1.2 * plain.rest_positions, 0.0) is None
+    assert Compression(plain).amounts(1.2 * plain.rest_positions, 0.0).max() == 0.0

@@ -51,6 +51,15 @@ def test_furrows_are_darker(surface):
     assert deep[0] / plain[0] > deep[2] / plain[2]
 
 
+def test_stretched_skin_is_redder_and_has_no_furrow(surface):
+    """Amounts below 0 show no furrow, whose slope and shade they would turn round, but redden."""
+    furrow = (190, 190, 200, 0)
+    plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
+    stretched = at(furrowed(surface, furrow, (-1.0, -1.0)), 25, 0)
+    assert (stretched == at(furrowed(surface, LEVEL, (-1.0, -1.0)), 25, 0)).all()
+    assert stretched[0] / stretched[2] > 1.03 * plain[0] / plain[2]
+
+
 def test_a_texel_follows_its_own_amount(surface):
     """A texel with alpha 0 follows the first amount, one with 255 the second."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
