@@ -59,7 +59,7 @@ class Coverage:
         if drawn.skin is not None:
             self._draw_skin(drawn, drawn.skin, view)
         for each in drawn.parts:
-            if each.buffers.kind != "STRANDS":
+            if not each.buffers.strand_radius:
                 self._draw_part(each, drawn.cut if each.part.lies_beneath else None, view)
 
     def _draw_skin(self, drawn: Drawn, skin: Skin, view: PlacedView) -> None:

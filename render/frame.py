@@ -34,7 +34,8 @@ class DrawnPart(Protocol):
     - strand_radius: radius of the strands [unit of the scene]; 0 for a solid part.
     - striation: coordinates of the vertices across and along fibres [mm], (n, 2), or None. Shells
       have shape (n, 6), with further columns: the vector from root to tip [mm], and the density.
-      The vertices of shells lie at 0.6 of this vector.
+      The vertices of shells lie at 0.6 of this vector. Locks have shape (n, 5): the unit vector
+      along the lock, half its width [mm] with the side of the vertex as its sign, and the opacity.
     """
 
     @property

@@ -50,8 +50,8 @@ def part_shader(
     is_around: whether the ambient light is given by nine coefficients.
     """
     around = ["AROUND"] * is_around
-    if kind == "SHELLS":
-        return ["shells.glsl", *around]
+    if kind in ("SHELLS", "LOCKS"):
+        return [f"{kind.lower()}.glsl", *around]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *opening, *shadows, *sunk, *around]
@@ -85,7 +85,10 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     """
     kind = part.kind
     shine = part.shine
-    if kind == "SHELLS":
+    if kind in ("STRANDS", "LOCKS"):  # size of a pixel at distance 1
+        _, _, width, height = view.viewport
+        program["pixel_size"] = 1.0 / view.camera.focal(width / height, height)
+    if kind in ("SHELLS", "LOCKS"):
         program["gloss"] = 2.0 * shine
         return
     is_rimless = part.is_enclosed or kind == "FIBRES"
@@ -95,10 +98,8 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     # Dark vertex colours mean missing light in dull enclosed parts, and a dark albedo in others.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
-    if kind == "STRANDS":  # radius of strands, and size of a pixel at distance 1
-        _, _, width, height = view.viewport
+    if kind == "STRANDS":
         program["half_strand"] = part.strand_radius
-        program["pixel_size"] = 1.0 / view.camera.focal(width / height, height)
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

@@ -19,7 +19,11 @@ from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
 # Number of columns of a part's striation -> kind of part, layout and attributes of its vertices.
-STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
+STRIPED = {
+    2: ("FIBRES", " 2f", "in_fibre"),
+    5: ("LOCKS", " 3f 1f 1f", "in_along", "in_half", "in_opacity"),
+    6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS),
+}
 LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # smallest number of shells
 LAYER_PIXELS = 10.0  # [pixels] between two layers, where shells are thickest
@@ -35,7 +39,7 @@ class PartBuffers:
 
     They hold no reference to the part, so that `PartStore` can release them with the part.
 
-    kind: "RIGID", "STRANDS", "FIBRES" or "SHELLS".
+    kind: "RIGID", "STRANDS", "FIBRES", "LOCKS" or "SHELLS".
     is_mixed: whether the part is blended over earlier drawings.
     """
 
@@ -46,7 +50,7 @@ class PartBuffers:
         self.shine = part.shine
         self.is_enclosed = part.is_enclosed
         self.strand_radius = part.strand_radius
-        # A define of surface.glsl; SHELLS has the program shells.glsl.
+        # A define of surface.glsl; SHELLS and LOCKS have programs of their own.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
@@ -56,9 +60,9 @@ class PartBuffers:
             self._thick = float(np.abs((self._way * part.normals).sum(axis=1)).max())
         self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
         self._breadth = np.ones((1, 1), np.float32)
-        if part.strand_radius:
+        if self.kind == "STRANDS":
             self._breadth = _strand_breadths(part.faces, len(part.vertices))
-        self.is_mixed = self.kind in ("STRANDS", "SHELLS")
+        self.is_mixed = self.kind in ("STRANDS", "LOCKS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: Floats32 | None = None
         self._striation = part.striation

@@ -75,7 +75,7 @@ def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
     for each in drawn.parts:
         if each.buffers.kind == "SHELLS":
             yield _of_hair(each, view)
-        elif each.buffers.kind != "STRANDS":
+        elif not each.buffers.strand_radius:
             yield _of_part(each, drawn.cut if each.part.lies_beneath else None, view)
 
 

@@ -65,7 +65,8 @@ class FaceScene(Scene):
     def _framing(self) -> Framing:
         """Return points of the head with its hair; a portrait ends below the chin."""
         marks = self.head.vertices[self.landmarks]
-        hair = [part.vertices for part in self._parts if part.striation is not None]
+        of_hair = [part for part in self._parts if part.striation is not None]
+        hair = [part.vertices for part in of_hair if not part.strand_radius]
         extent = read_only(np.vstack([self.rest_positions, *hair]))
         lowest = float(marks[8, 1]) - 32.0  # [mm] below the chin's landmark
         focus = read_only(0.5 * (marks.min(axis=0) + marks.max(axis=0)))

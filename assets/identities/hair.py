@@ -22,13 +22,12 @@ from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ..model import Part
 from ..smooth import Points, smooth_step
-from ..topology import grid_faces, quarter
+from ..topology import quarter
+from .locks import MEAN, SHORT, TIED, locks_on, waves
 
 HAIR = "hair"  # the name of the part
 SLEEK = 0.4  # specular strength of hair that is combed smooth
 FINE = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
-MEAN = 0.6  # fraction of a strand's length at which the part's vertices lie
-LOOSE_LENGTH = 22.0  # [mm] of the longest stray hairs
 
 
 @dataclass(frozen=True)
@@ -42,6 +41,7 @@ class Cut:
     behind: distance behind the hairline at which strands reach their full length [mm].
     knot: half the width of the knot or tail into which hair is tied [mm]; 0: hair is not tied.
     tail: length of a hanging tail [mm]; 0: tied hair is wound into a knot.
+    aside: how far a tail falls to the subject's right, per millimetre down.
     """
 
     whorl: tuple[float, float, float]
@@ -51,6 +51,7 @@ class Cut:
     behind: float = 25.0
     knot: float = 0.0
     tail: float = 0.0
+    aside: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,11 @@ CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
         "parted": Fall(26.0, 77.0),
         "centred": Fall(0.0, 123.0),
         "aside": Fall(-22.0, 97.0),
-        "knotted": Cut((0.0, 0.3, 0.95), 18.0, 32.0, 0.45, behind=34.0, knot=32.0),
-        "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=34.0, knot=33.0),
-        "tailed": Cut((0.0, -0.45, 0.9), 18.0, 32.0, 0.45, behind=34.0, knot=25.0, tail=230.0),
+        "knotted": Cut((0.62, 0.52, 0.59), 18.0, 32.0, 0.45, behind=26.0, knot=36.0),
+        "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=26.0, knot=36.0),
+        "tailed": Cut(
+            (0.38, -0.3, 0.87), 18.0, 32.0, 0.45, behind=26.0, knot=27.0, tail=240.0, aside=0.5
+        ),
         "short": OWN_CUT,
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
@@ -101,6 +104,9 @@ class Hairline:
         up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
+        # No hairline is a drawn line: it has notches and tongues, other ones on each person.
+        turn = self.front + self.temples
+        row += 1.3 * np.sin(107.0 * across + turn) + 1.1 * np.sin(241.0 * across + 3.0 * turn)
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
         bald_depth = 40.0  # [mm] that a wholly bald crown shifts the hairline
         beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
@@ -155,25 +161,24 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     points, normals, faces, behind, covers = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit_vectors(np.array([cut.whorl]))[0]
-    beside = unit_vectors(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
+    beside = _first_side(cut, whorl)
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     painted_depth = 1.0  # [mm] behind the hairline, up to which hairs are only painted
     is_hairy = (behind[faces] > painted_depth).any(axis=1)
     faces, rows, angle = _parted(faces[is_hairy], angle)
-    points = points[rows]
-    normals = normals[rows]
-    behind = behind[rows]
-    covers = covers[rows]
+    points, normals, behind, covers = (each[rows] for each in (points, normals, behind, covers))
     out = unit_vectors(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
     comb = unit_vectors(np.cross(np.cross(whorl, out), normals))
-    long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
-    long = length * long * smooth_step(0.0, cut.behind, behind)
+    if whorl[2] < 0.0:  # at a crown
+        turned, comb = _swirled(whorl, out, away, comb)
+        angle = angle - turned
+    long = length * _lengths(cut, points, normals, behind)
     # Distances behind the hairline [mm]: up to the first hair lies flat, from the second it stands
     # off by the cut's lift.
-    flat_depths = 0.0, 45.0
+    flat_depths = 0.0, 24.0 if cut.knot else 45.0
     lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
     whorl_radius = 30.0  # [mm]; strands within it stand up and do not shine
     aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
@@ -183,33 +188,82 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
-    uneven = 1.0 * np.sin(0.22 * radius * angle) + 0.8 * np.sin(0.57 * radius * angle + 1.0)
+    uneven = _uneven(radius * angle)
     hem_depth = 20.0  # [mm] over which hair becomes dense
     bare_depth = 5.0  # [mm] behind the hairline, where hair that is tied back begins
-    dense = np.minimum(
-        (behind - (bare_depth if cut.knot else painted_depth) + uneven) / hem_depth, 2.0
-    )
+    first_depth = bare_depth if cut.knot else painted_depth
+    dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    # Cropped hair shines little: its tips point outward everywhere, so no ring of highlights runs
-    # around the whorl.
+    # Cropped hair shines little: its tips point outward, so no ring of light is around the whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
+    light = _tones(points, radius * away)
     hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
-        colours=np.tile(colour, (len(points), 1)).astype(np.float32),
+        colours=(light * colour).astype(np.float32),
         bone="cranium",
         shine=SLEEK if cut.knot else short_shine,
         striation=striation.astype(np.float32),
     )
-    loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
+    # At the front hairs are shorter, and those that are combed over the forehead longer.
+    growth = TIED if cut.knot else replace(SHORT, least=min(2.0 + 0.15 * length * cut.top, 5.5))
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
     upward_share = 0.8
     hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
-    return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
+    return from_within(hair, faces[hangs[faces].all(axis=1)]), hair, locks_on(hair, growth)
+
+
+def _tones(points: Points, away: Floats64) -> Floats64:
+    """Factors of the colour of strands, (n, 1); away: distances from the whorl [mm], (n,)."""
+    difference = 0.07  # by which locks are lighter and darker
+    root_radius = 7.0  # [mm] around a whorl, where roots are seen
+    at_roots = 1.0 - 0.16 * np.exp(-((away / root_radius) ** 2))[:, None]
+    return np.asarray(at_roots * (1.0 + difference * waves(points, 0.33, 1.0)))
+
+
+def _uneven(across: Floats64) -> Floats64:
+    """How far hems lie before their mean [mm], at places across strands [mm], (n,)."""
+    fine = 1.0 * np.sin(0.22 * across) + 0.8 * np.sin(0.57 * across + 1.0)
+    return np.asarray(fine + 1.5 * np.sin(0.085 * across + 2.0))
+
+
+def _first_side(cut: Cut, whorl: Floats64) -> Floats64:
+    """The direction from a whorl at which angles around it are 0, shape (3,).
+
+    On the line opposite strands begin anew. It runs down the face to a knot behind the head, else
+    down a side.
+    """
+    beside = np.cross([0.0, 0.3, 1.0], whorl)
+    highest = 0.8  # whorls below belong to knots on top of the head
+    if cut.knot and whorl[1] > -highest:
+        beside = np.array([0.0, 1.0, 0.0]) - whorl[1] * whorl
+    return np.asarray(unit_vectors(beside[None])[0])
+
+
+def _swirled(
+    whorl: Floats64, out: Points, away: Floats64, comb: Points
+) -> tuple[Floats64, Floats64]:
+    """How far strands have turned around a whorl [radians], (n,), and their directions, (n, 3).
+
+    out: unit, from the middle of the head. away: their angles from the whorl.
+    """
+    swirl = 1.6
+    swirl_angle = 0.3  # from the whorl, up to which they turn
+    turned = swirl * np.exp(-away / swirl_angle)
+    around = np.cross(whorl, out) * (turned / swirl_angle)[:, None]
+    return turned, unit_vectors(comb - around)
+
+
+def _lengths(cut: Cut, points: Points, normals: Points, behind: Floats64) -> Floats64:
+    """Lengths of strands [mm], (n,); cut by hand, some stand higher than others."""
+    uneven_share = 0.0 if cut.knot else 0.06
+    long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
+    long *= smooth_step(0.0, cut.behind, behind) * (1.0 + uneven_share * waves(points, 0.21)[:, 0])
+    return np.asarray(long)
 
 
 def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
@@ -243,47 +297,6 @@ def from_within(hair: Part, faces: Integers32) -> Part:
         "colours": inner_light * rows["colours"],
     }
     return replace(hair, name=HAIR + "_inside" + hair.name.removeprefix(HAIR), **rows)
-
-
-def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
-    """Make stray hairs, up to `longest` [mm], that break the smooth outline of a part of hair."""
-    assert hair.striation is not None
-    random = np.random.default_rng(0)
-    step_count = 5
-    t = np.linspace(0.0, 1.0, step_count)[:, None, None]
-    is_dense = (hair.striation[hair.faces, 5] > 0.5).all(axis=1)
-    hair_count = 160
-    corners = random.choice(hair.faces[is_dense], hair_count)
-    shares = random.dirichlet((1.0, 1.0, 1.0), hair_count)[:, :, None]
-    columns = hair.vertices, hair.normals, hair.colours, hair.striation[:, 2:5]
-    root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
-    normal = unit_vectors(normal)
-    across = unit_vectors(np.cross(normal, way))
-    rise = (0.05, 0.4)  # least and greatest height above the surface, as fractions of the length
-    off = random.uniform(*rise, (hair_count, 1))
-    stray = 0.2  # standard deviation of the sideways offset, as a fraction of the length
-    aside = random.normal(0.0, stray, (hair_count, 1))
-    along = longest * (np.cross(across, normal) + off * normal + aside * across)
-    droop = 0.2  # fraction of the length that tips sink
-    bent = longest * droop * (normal + np.array([0.0, 1.0, 0.0]))
-    turn = np.radians([0.0, 120.0, 240.0])[:, None]
-    ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
-    places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]
-    radius = 0.045  # [mm]
-    places = places + radius * ring[:, None]
-    corner_count = 3 * step_count
-    one = grid_faces(np.arange(corner_count).reshape(places.shape[1:3]), closed=True)
-    firsts = corner_count * np.arange(hair_count, dtype=np.int32)
-    return replace(
-        hair,
-        name=HAIR + "_loose",
-        vertices=places.reshape(-1, 3).astype(np.float32),
-        normals=np.broadcast_to(ring[:, None], places.shape).reshape(-1, 3).astype(np.float32),
-        faces=(firsts[:, None, None] + one).reshape(-1, 3),
-        colours=np.repeat(colour, step_count * 3, axis=0).astype(np.float32),
-        strand_radius=radius,
-        striation=None,
-    )
 
 
 def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:

@@ -21,6 +21,7 @@ from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
+from .locks import FALLING, MEAN, WOUND, locks_on
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
 EDGE, ROUNDED = np.radians([62.0, 50.0])
@@ -91,7 +92,7 @@ def falling_hair(
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
-    return from_within(hair, hair.faces), short.loose_hairs(hair), hair
+    return from_within(hair, hair.faces), hair, locks_on(hair, FALLING)
 
 
 def _slide(along: Floats64) -> Floats64:
@@ -162,10 +163,9 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         far = length * cut.tail * t
         root_depth = 12.0  # [mm] below the scalp, where a tail begins
         free_distance = 75.0  # [mm] from the beginning of a tail to its full width
-        bent = smooth_step(root_depth, free_distance, far)
         tie_distance = 28.0  # [mm] from the beginning of a tail to its tie
         free = smooth_step(tie_distance, free_distance, far)
-        ways = unit_vectors((1.0 - bent) * out + bent * DOWN)
+        ways = _falling(far, out, cut.aside, root_depth, free_distance)
         line = root - root_depth * out + np.cumsum(ways * far[1], axis=0)
         tied_width = 0.45  # thickness at the tie, as a fraction of the full thickness
         thick = tied_width + (1.0 - tied_width) * free
@@ -178,7 +178,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         # Number of locks, width of a lock [mm], depth of the grooves between locks as a fraction
         # of the radius, and turns of the locks around the axis.
         tail = (6, 24.0, 0.04, 0.1)
-        locks, wide, deep, turns = tail
+        count, wide, deep, turns = tail
     else:  # a ball, sampled from its rim on the scalp to its outer pole
         rise = -1.0 + (0.498 * np.pi + 1.0) * t
         thick = np.cos(rise)
@@ -191,18 +191,32 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         shade = smooth_step(-0.3, -1.0, rise)
         dense = FULL + 0.0 * t
         knot = (3, 13.0, 0.1, 1.8)
-        locks, wide, deep, turns = knot
+        count, wide, deep, turns = knot
     strand_count = 42
     place = np.linspace(0.0, 2.0 * np.pi, strand_count)[:, None, None]
-    groove = free * (0.5 + 0.5 * np.cos(locks * place)) ** 3
+    groove = free * (0.5 + 0.5 * np.cos(count * place)) ** 3
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
-    ring = np.cos(turn) * unit_vectors(np.cross(RIGHT, ways)) + np.sin(turn) * RIGHT
+    upward = unit_vectors(np.cross(RIGHT, ways))
+    ring = np.cos(turn) * upward + np.sin(turn) * np.cross(ways, upward)
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
-    across = locks * wide * place[..., 0] / (2.0 * np.pi)
+    across = count * wide * place[..., 0] / (2.0 * np.pi)
     tied = _layers(HAIR + "_tied", places, across, VOLUME, dense[:, 0], light * colour)
-    return (*short.hair_of(cut, scalp, colour, length), from_within(tied, tied.faces), tied)
+    on_scalp = short.hair_of(cut, scalp, colour, length)
+    locks = locks_on(tied, FALLING if cut.tail else WOUND)
+    return (*on_scalp, from_within(tied, tied.faces), tied, locks)
+
+
+def _falling(far: Floats64, out: Floats64, aside: float, first: float, last: float) -> Floats64:
+    """Directions along a tail, (n, 3): outward, and between two distances more and more down.
+
+    far: distances along it [mm], (n, 1). out: unit, outward. aside: see `Cut`.
+    """
+    bent = smooth_step(first, last, far)
+    straight_distances = 95.0, 190.0  # [mm] between which it ceases to fall to the side
+    sideways = aside * (1.0 - smooth_step(*straight_distances, far))
+    return unit_vectors((1.0 - bent) * out + bent * (DOWN - sideways * RIGHT))
 
 
 def _layers(
@@ -238,7 +252,7 @@ def _layers(
     way = thick * (normals + slide * ahead)
     return Part(
         name=name,
-        vertices=(points - (1.0 - short.MEAN) * thick * normals).astype(np.float32),
+        vertices=(points - (1.0 - MEAN) * thick * normals).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=grid_faces(number),
         colours=np.broadcast_to(colour, shape).reshape(-1, 3).astype(np.float32),

@@ -1,11 +1,8 @@
 // Hair as shells: one surface is drawn once for each layer, from the skin to the tips of strands. A
 // layer shows the strands that reach its height. Slowly changing values are computed per vertex.
-// Source: Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces". Light is
-// computed after Kajiya, Kay 1989, "Rendering fur with three dimensional textures". There are two
-// highlights, one of them in the hair's colour, as in Scheuermann 2004, "Practical real-time hair
-// rendering and shading".
+// Source: Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces".
 
-#include "lighting.glsl"
+#include "hair_light.glsl"
 #include "shell_layers.glsl"
 
 #define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float facing;
@@ -31,20 +28,15 @@ void main() {
     vec4 position = model_view * vec4(in_position + (layer - MEAN) * in_way, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_way;
     along -= dot(along, normal) * normal;  // tangent to the skin, else a bright ring surrounds whorls
-    // Hair scatters light, so it is also lit a little beyond the terminator.
-    float facing = dot(normal, to_key);
-    float lit = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
-    float rim = max(dot(normal, TO_RIM), 0.0);
-    surface.diffuse = 0.85 * key_light * lit + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
-        + hemisphere(normal) + 0.5 * rim_light * rim * rim;
     // Strands that stand up show only their tips, which do not shine.
     float lying = smoothstep(0.3, 0.8, length(along) / max(length(mat3(model_view) * in_way), 1e-6));
-    surface.shine = key_light * (lit * clamp(2.0 * facing, 0.0, 1.0) * gloss * lying);
+    HairLight light = hair_light(normal, along, lying, position.xyz, gloss);
+    surface.diffuse = light.diffuse;
+    surface.shine = light.shine;
+    surface.cosine = light.cosine;
     surface.colour = in_colour;
     surface.strand = in_strand;
     surface.layer = layer, surface.dense = in_dense;
-    // Cosine of the angle between strand and half vector (between the directions to eye and light).
-    surface.cosine = dot(along / max(length(along), 1e-6), normalize(to_key + normalize(-position.xyz)));
     surface.facing = abs(dot(normal, normalize(position.xyz)));
     gl_Position = projection * position;
 }
@@ -59,8 +51,7 @@ layout(location = 1) out vec4 pixel_surface;
 const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LEAN = 0.6;                  // [mm/mm] sideways shift of locks along their strands
 const float LONG = 11.0;                 // [mm] along a strand over which its random length changes
-const float TILT = 0.10, UNEVEN = 0.45;  // shifts of both highlights, and random shift by strand
-const float SHARPNESS = 70.0, SOFTNESS = 14.0;  // exponents of the white and the coloured highlight
+const float UNEVEN = 0.45;               // random shift of highlights by strand
 const vec2 SIDEWAYS = vec2(0.6, 0.85);   // facing at which single strands begin to show, and show fully
 const vec2 RAGGED = vec2(0.4, 0.08);     // random change of density by strand and lock, for uneven hems
 const vec2 CRISP = vec2(1.1, 1.6);       // steepness of hems where locks show, and where strands show
@@ -105,14 +96,11 @@ void main() {
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     if (cover < 0.08) discard;
     float uneven = 0.6 * (tones.x + tones.y);
-    // One highlight is shifted toward the root, the other toward the tip.
-    float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;
-    float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
     // Layers above absorb light; their number is the height of the strand above this layer.
     float above = (far - surface.layer) * float(layers);
     float open = mix(1.0, DARK, smoothstep(COVERED, COVERED + max(1.0, 0.5 * float(layers)), above));
     vec3 front = surface.colour * (1.0 + 1.0 * uneven) * open;
-    vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
+    vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * highlights(surface.cosine, UNEVEN * uneven, front);
     // Hair of several layers has no single depth, so the depth is 0.
     pixel_surface = has_edge(surface.dense, surface.facing) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);

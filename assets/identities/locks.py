@@ -1,0 +1,182 @@
+"""Locks: thin ribbons of a few hairs each, over the layers of hair.
+
+Layers (render/shaders/shells.glsl) are smooth seen from the side. Ends of locks break this outline,
+and single hairs stand before the hairline.
+Source: Ward, Bertails, Kim, Marschner, Cani, Lin 2007, "A survey on hair modeling", section 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
+from ...geometry.directions import unit_vectors
+from ..model import Part
+from ..smooth import Points
+
+MEAN = 0.6  # share of the way of layers at which their vertices lie
+STATIONS = 3  # places along a lock: its root, one between, and its tip
+CORNERS = 2 * STATIONS - 1
+FINEST = 0.05  # [mm] half the thickness of a single hair, as it is drawn
+
+
+@dataclass(frozen=True)
+class Growth:
+    """How locks grow on the layers of hair; chosen by eye.
+
+    count: their number, at the same distances all over dense hair.
+    root, tip: where they begin, and where they end on average, as shares of the layers' way.
+    least, longest: bounds of their lengths [mm].
+    spread: of their directions, as a share of their lengths.
+    half: half the width of the widest at its root [mm].
+    lying: how flat they lie on the layers, 0 to 1.
+    radius: of the head that they bend around [mm].
+    fringe: how much closer they stand at hems, relative to elsewhere.
+    """
+
+    count: int
+    root: float
+    tip: float
+    least: float
+    longest: float
+    spread: float
+    half: float
+    lying: float = 0.0
+    radius: float = 95.0
+    fringe: float = 3.0
+
+
+SHORT = Growth(6500, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.24, half=0.17)
+TIED = Growth(
+    count=5000,
+    root=0.5,
+    tip=1.7,
+    least=5.0,
+    longest=34.0,
+    spread=0.07,
+    half=0.22,
+    lying=0.9,
+    radius=78.0,
+)
+FALLING = Growth(
+    count=500,
+    root=0.4,
+    tip=3.0,
+    least=10.0,
+    longest=30.0,
+    spread=0.12,
+    half=0.08,
+    lying=1.0,
+    radius=75.0,
+    fringe=-0.8,
+)
+WOUND = replace(FALLING, count=350, longest=22.0, radius=30.0)  # on a knot; a tail is straight
+
+
+def locks_on(hair: Part, growth: Growth) -> Part:
+    """Locks on layers of hair; they are wide in the midst of it, and single hairs at its hem."""
+    assert hair.striation is not None
+    chances = _chances(growth.count)
+    faces, shares = _places(hair, growth.fringe, chances[:, :3])
+    corners = hair.faces[faces]
+    columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 2:6], hair.colours])
+    at = (shares[:, :, None] * columns[corners]).sum(axis=1)
+    root, normal, way, dense, colour = np.split(at, [3, 6, 9, 10], axis=1)
+    normal = unit_vectors(normal)
+    long = np.linalg.norm(way, axis=1, keepdims=True)
+    ahead = way / np.maximum(long, 1e-6)
+    across = unit_vectors(np.cross(normal, ahead) + 1e-6)
+    # Locks beside each other lean alike, and each a little for itself.
+    alone = chances[:, 3:6] - np.float32(0.5)
+    lean = growth.spread * (waves(root, 0.45) + 1.2 * alone[:, :1])
+    ahead -= growth.lying * (ahead * normal).sum(axis=1, keepdims=True) * normal
+    # Of lying hair only a few stand off.
+    risen = alone[:, 1:2] * (1.0 - growth.lying * (1.0 - 6.0 * alone[:, 1:2] ** 4))
+    rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 0.6, 2.0) + risen)
+    # Around a whorl, where layers stand up, they lie to all sides.
+    upright = np.clip((ahead * normal).sum(axis=1, keepdims=True) - 0.6, 0.0, 0.4)
+    stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
+    ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
+    reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
+    length = np.minimum(reach * np.maximum(long, growth.least), growth.longest)
+    t = np.linspace(0.0, 1.0, STATIONS, dtype=np.float32)[:, None]
+    # They follow the round head, and their tips hang.
+    bend = length**2 / (2.0 * growth.radius) * normal
+    start = root + (growth.root - MEAN) * way
+    middles = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
+    along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
+    thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
+    thin *= 1.0 + 3.0 * upright
+    half = (FINEST + (growth.half - FINEST) * thin)[:, None] * (1.0 - t**2)
+    tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
+    light = tone[:, None] * (0.84 + 0.26 * t)
+    opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)
+    sides = np.cross(normal[:, None], along) * half
+
+    def rows(first: Floats32 | Floats64, second: Floats32 | Floats64 | None = None) -> Floats32:
+        """Values of both sides of stations, as rows of corners; a tip has one corner."""
+        both = np.stack([first, first if second is None else second], axis=2)
+        whole = both.reshape(len(both), 2 * STATIONS, -1)[:, :CORNERS]
+        return np.ascontiguousarray(whole.reshape(len(both) * CORNERS, -1), np.float32)
+
+    every = np.broadcast_to(normal[:, None], middles.shape)
+    return replace(
+        hair,
+        name=hair.name + "_locks",
+        vertices=rows(middles + sides, middles - sides),
+        normals=rows(every),
+        faces=_ribbons(growth.count),
+        colours=rows(np.clip(light * colour[:, None], 0.0, 1.0)),
+        strand_radius=growth.half,
+        striation=np.hstack([rows(along), rows(half, -half), rows(opacity)]),
+    )
+
+
+@lru_cache(maxsize=4)
+def _chances(count: int) -> Floats32:
+    """Random numbers of locks, 0 to 1, shape (count, 11); the first are evenly spread."""
+    found = np.random.default_rng(0).random((count, 11), np.float32)
+    found[:, 0] = (np.arange(count) + found[:, 0]) / count
+    return found
+
+
+def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, Floats32]:
+    """Faces of hair on which locks grow, (n,), and the shares of their corners, (n, 3)."""
+    assert hair.striation is not None
+    a, b, c = np.moveaxis(hair.vertices[hair.faces], 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    dense = hair.striation[:, 5][hair.faces].mean(axis=1)
+    way = hair.striation[:, 2:5]
+    lengths = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
+    upright = np.clip((way * hair.normals).sum(axis=1) / lengths - 0.6, 0.0, 0.4)[hair.faces[:, 0]]
+    # At the hem single hairs stand closer, and fewer before it. At a whorl layers show no strands.
+    weights = area * np.clip(0.2 + 5.0 * dense, 0.0, 1.0) * (1.0 + fringe * (dense < 0.7))
+    weights *= 1.0 + 8.0 * upright
+    ends = np.cumsum(weights)
+    faces = np.searchsorted(ends, chances[:, 0] * ends[-1], side="right")
+    root, side = np.sqrt(chances[:, 1]), chances[:, 2]
+    shares = np.stack([1.0 - root, root * (1.0 - side), root * side], axis=1)
+    return np.minimum(faces, len(weights) - 1), shares
+
+
+def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
+    """A smooth field in space, about -1 to 1, (n, 1); pace: its change per mm."""
+    x, y, z = np.moveaxis(pace * places + np.float32(turn), 1, 0)
+    field = np.sin(x + 1.3 * np.sin(0.7 * z)) + np.sin(1.1 * y + z) + np.sin(0.9 * z - 0.8 * x)
+    return np.asarray(0.5 * field[:, None], np.float32)
+
+
+@lru_cache(maxsize=4)
+def _ribbons(count: int) -> Integers32:
+    """Faces of locks, counter-clockwise from outside, (count * 3, 3)."""
+    one = []
+    for k in range(0, CORNERS - 3, 2):
+        one += [(k, k + 1, k + 2), (k + 2, k + 1, k + 3)]
+    one.append((CORNERS - 3, CORNERS - 2, CORNERS - 1))
+    firsts = CORNERS * np.arange(count, dtype=np.int32)
+    found = (firsts[:, None, None] + np.array(one, np.int32)).reshape(-1, 3)
+    found.flags.writeable = False
+    return found

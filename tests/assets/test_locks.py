@@ -1,0 +1,106 @@
+"""Locks of hair: they break outlines, soften hairlines, and belong to sound parts."""
+
+import numpy as np
+import pytest
+
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.drawing import camera_for
+from risorius.app.passes.passes import Passes
+from risorius.app.scenes import FaceScene
+from risorius.assets import Segment, load
+from risorius.assets.identities import built_in_hair, person_called
+from risorius.assets.identities.locks import CORNERS, SHORT, TIED, locks_on
+from risorius.geometry.normals import cross_products
+from risorius.render import Style
+
+
+def person_of(name):
+    """The built-in head, or a person by number or name."""
+    return load("head") if name == "head" else person_called(name)
+
+
+def picture(name, view, size=(700, 700)):
+    """A picture on nothing, RGBA."""
+    with Capture(
+        FaceScene(person_of(name)), CaptureOptions(size, style=Style(background=None))
+    ) as c:
+        c.camera = camera_for(c.scene, view)
+        return c.draw_image().astype(np.float64)
+
+
+@pytest.mark.parametrize("growth", [SHORT, TIED])
+def test_locks_are_sound_ribbons(growth):
+    """Both corners of a station lie at the same distance from its middle, and taper to a tip."""
+    hair = built_in_hair(load("head"))[1]
+    locks = locks_on(hair, growth)
+    assert len(locks.vertices) == CORNERS * growth.count
+    for each in (locks.vertices, locks.normals, locks.colours, locks.striation):
+        assert each.dtype == np.float32
+        assert np.isfinite(each).all()
+    assert 0.0 <= locks.colours.min() <= locks.colours.max() <= 1.0
+    along, half = locks.striation[:, :3], locks.striation[:, 3:4]
+    middles = locks.vertices - half * np.cross(locks.normals, along)
+    rows = middles.reshape(growth.count, CORNERS, 3)
+    assert rows[:, 0:-1:2] == pytest.approx(rows[:, 1::2], abs=1e-4)
+    lengths = np.linalg.norm(np.diff(rows[:, ::2], axis=1), axis=2).sum(axis=1)
+    assert lengths.max() < 1.5 * growth.longest
+    assert (half.reshape(-1, CORNERS)[:, -1] == 0.0).all()
+    outward = (cross_products(locks.vertices, locks.faces) * locks.normals[locks.faces[:, 0]]).sum(
+        axis=1
+    )
+    assert (outward >= -1e-4).mean() > 0.98
+    again = locks_on(hair, growth)
+    assert (again.vertices == locks.vertices).all()
+
+
+@pytest.mark.parametrize("name", ["head", 19, "kofi"])
+def test_the_outline_of_short_hair_is_broken_by_ends(name):
+    """Ends of hair stand off the outline above the head; it was a smooth arc.
+
+    Counted are pixels in each column that hair covers in part. Of layers alone there is one.
+    """
+    alpha = picture(name, "0,0")[:250, 260:440, 3]
+    is_part = (alpha > 8.0) & (alpha < 247.0)
+    assert is_part.sum(axis=0).mean() > 1.6
+
+
+def pixels_of(camera, places, size):
+    """Pixels of points (n, 3) in a square picture: columns and rows, (n, 2)."""
+    right, up, back = np.stack(camera.axes())
+    off = places - camera.target
+    scale = 0.5 * size / np.tan(np.radians(0.5 * camera.field_of_view))
+    scale = scale / (camera.distance - off @ back)
+    return (0.5 * size + np.stack([scale * (off @ right), -scale * (off @ up)], axis=1)).astype(int)
+
+
+@pytest.mark.parametrize("name", [7, 19])
+def test_a_whorl_is_no_flat_disc(name):
+    """At the whorl strands differ from each other; they had one tone there."""
+    hair = next(part for part in person_of(name).parts if part.name == "hair")
+    camera = camera_for(FaceScene(person_of(name)), "180,55")
+    place = hair.vertices[np.argmin(hair.striation[:, 1])]
+    column, row = pixels_of(camera, place[None], 500)[0]
+    light = picture(name, "180,55", (500, 500))[..., :3].mean(axis=2)
+    light = light[row - 15 : row + 16, column - 15 : column + 16]
+    detail = light[3:-3] - 0.5 * (light[6:] + light[:-6])
+    assert np.std(detail) > 1.5
+
+
+@pytest.mark.parametrize(("name", "least"), [(3, 300), (8, 300), (11, 60), (66, 60)])
+def test_tied_hair_is_seen_from_the_front(name, least):
+    """A tail or a knot is seen beside or above the head; only a cap of hair was.
+
+    Counted are pixels of hair at its place.
+    """
+    scene = FaceScene(person_of(name))
+    with Capture(scene, CaptureOptions((300, 300), passes=("segmentation",))) as capture:
+        capture.draw_image()
+        passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
+        labels = passes.draw(capture.camera, capture.options.style, ("segmentation",))
+        is_hair = labels["segmentation"] == Segment.HAIR
+        tied = next(part for part in scene.head.parts if part.name == "hair_tied")
+        seen = pixels_of(capture.camera, tied.vertices, 300)
+    box = np.zeros_like(is_hair)
+    (left, top), (right, bottom) = seen.min(axis=0), seen.max(axis=0)
+    box[max(top, 0) : bottom + 1, max(left, 0) : right + 1] = True
+    assert (is_hair & box).sum() > least
