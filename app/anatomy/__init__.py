@@ -17,7 +17,7 @@ from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import GLASSES, HAIR, MASK
 
 from ..scenes import Drawable, Face
-from ..scenes.mouth import BentPart
+from ..scenes.bent_part import BentPart
 from ..scenes.openings import opening_before
 from .muscle_bands import Muscles
 

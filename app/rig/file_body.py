@@ -24,6 +24,7 @@ from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
+from ..scenes.bent_part import FaceNow
 from ..scenes.skin_part import SkinPart
 from .bodies import EYES
 from .pieces import FilePiece
@@ -98,7 +99,7 @@ class FileBody:
             elif role == TONGUE:
                 moved[numbers] = moved_points(mandible, pose.parts[TONGUE].astype(np.float64))
         if self._lashes is not None:
-            self._lashes.follow(pose.skin, pose.matrices[CRANIUM])
+            self._lashes.follow(FaceNow(pose.skin, pose.matrices))
             moved[self._pieces["on_skin"]] = self._lashes.vertices
         if self._bag is not None:
             deep = self._bag.deep

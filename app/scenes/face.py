@@ -17,10 +17,11 @@ from risorius.geometry.read_only import read_only
 
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
+from .bent_part import BentPart, FaceNow
 from .drawable import Framing, SkinImages
 from .face_under_skin import Face
 from .mask import Mask
-from .mouth import MouthWalls, Tongue, shaded_mouth
+from .mouth import shaded_mouth
 from .openings import Rim, rims_of
 from .scene import Scene
 from .skin_part import SkinPart
@@ -105,20 +106,12 @@ class FaceScene(Scene):
         """The parts in their present shape; computed here, because pictures skip some steps."""
         if not self._are_bent:
             self._are_bent = True
+            jaw = self.simulation.bones.jaw
             tongue = self.simulation.anatomy.tongue()
-            bones = self.bone_transforms()
+            now = FaceNow(self.positions, self.bone_transforms(), jaw, tongue)
             for part in self._parts:
-                if isinstance(part, SkinPart):
-                    part.follow(self.positions, bones[part.bone])
-                elif isinstance(part, Tongue) and tongue is not None:
-                    part.bend(tongue)
-                elif isinstance(part, Mask):
-                    cranium = bones["cranium"]
-                    mandible = np.linalg.inv(cranium) @ bones["mandible"]
-                    part.follow(self.positions, cranium, mandible)
-                elif isinstance(part, MouthWalls):
-                    to_cranium = np.linalg.inv(bones["cranium"])
-                    part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
+                if isinstance(part, BentPart):
+                    part.follow(now)
         return self._parts
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:

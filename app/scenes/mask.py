@@ -12,7 +12,7 @@ from risorius.assets.identities.mask import SHAPE
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_normals
 
-from .mouth import BentPart, drawn_attributes
+from .bent_part import BentPart, FaceNow, drawn_attributes
 
 
 class Mask(BentPart):
@@ -37,15 +37,11 @@ class Mask(BentPart):
         reach = 60.0  # [mm]
         self._held = np.clip(1.0 - distances / reach, 0.0, 1.0)[:, None]
 
-    def follow(self, skin: Floats64, cranium: Floats64, mandible: Floats64) -> None:
-        """Take the shape on the present skin, (V, 3).
-
-        cranium: place of the cranium, a matrix (4, 4). mandible: motion relative to the cranium.
-        """
-        moved = stretched_walls(self._rest, self._shares, mandible)
-        there = (skin - cranium[:3, 3]) @ np.linalg.inv(cranium[:3, :3]).T
+    def follow(self, now: FaceNow) -> None:
+        """Take the shape on the present skin."""
+        moved = stretched_walls(self._rest, self._shares, now.mandible())
         clearance = 2.0  # [mm]
-        heights = self._heights(there, moved[: len(self._outward)])
+        heights = self._heights(now.skin_on("cranium"), moved[: len(self._outward)])
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)
         least = np.maximum(pushed, 0.0).reshape(SHAPE)
         push = least

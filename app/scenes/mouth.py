@@ -14,9 +14,10 @@ import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
 from risorius.assets.model import MASK
-from risorius.geometry.arrays import Floats32, Floats64, Integers32
-from risorius.geometry.normals import vertex_normals
+from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.read_only import read_only
+
+from .bent_part import BentPart, FaceNow, drawn_attributes
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of parts; the cavity is dark already
 
@@ -40,42 +41,20 @@ LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
 
 
 @dataclass(eq=False, kw_only=True)
-class BentPart:
-    """A part that changes its shape; it is drawn like any other part (render/parts.py)."""
-
-    name: str
-    vertices: Floats32
-    normals: Floats32
-    faces: Integers32
-    colours: Floats32
-    bone: str
-    shine: float
-    is_enclosed: bool = True
-    strand_radius: float = 0.0
-    striation: None = None
-    roots: None = None
-
-    def take_shape(self, vertices: Floats64) -> None:
-        """Set the vertices, shape (n, 3), and compute their normals."""
-        self.vertices = read_only(vertices.astype(np.float32))
-        self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
-
-
-@dataclass(eq=False, kw_only=True)
 class Tongue(BentPart):
     """The tongue, which is darker toward the back."""
 
     unlit: Floats32  # colours of the tongue in full light
     front: float  # z of the front teeth [mm]
-    shape: Floats64 | None = None  # array of the last `bend`
+    shape: Floats64 | None = None  # array of the last `follow`
 
-    def bend(self, vertices: Floats64) -> None:
-        """Set another shape (n, 3) and its colours; do nothing for the same array."""
-        if vertices is self.shape:
+    def follow(self, now: FaceNow) -> None:
+        """Set another shape and its colours; do nothing for the same array."""
+        if now.tongue is None or now.tongue is self.shape:
             return
-        self.shape = vertices
-        self.take_shape(vertices)
-        self.colours = read_only(_shaded(vertices, self.unlit, self.front, TONGUE))
+        self.shape = now.tongue
+        self.take_shape(self.shape)
+        self.colours = read_only(_shaded(self.shape, self.unlit, self.front, TONGUE))
 
 
 @dataclass(eq=False, kw_only=True)
@@ -85,27 +64,19 @@ class MouthWalls(BentPart):
     shares: Floats32  # share of the mandible's motion for each vertex, shape (n,)
     rest: Floats32
     resting_normals: Floats32
-    jaw: tuple[float, ...] = ()  # values of the jaw at the last stretch
+    jaw: tuple[float, ...] = ()  # values of the jaw at the last `follow`
 
-    def stretch(self, jaw: tuple[float, ...], mandible: Floats64) -> None:
-        """Follow the mandible; do nothing for the same values of the jaw.
-
-        mandible: motion relative to the cranium, a matrix (4, 4).
-        """
-        if jaw == self.jaw:
+    def follow(self, now: FaceNow) -> None:
+        """Follow the mandible; do nothing for the same values of the jaw."""
+        if now.jaw == self.jaw:
             return
-        self.jaw = jaw
-        if not any(jaw):
+        self.jaw = now.jaw
+        if not any(now.jaw):
             self.vertices = self.rest
             self.normals = self.resting_normals
             return
-        self.take_shape(stretched_walls(self.rest.astype(np.float64), self.shares, mandible))
-
-
-def drawn_attributes(part: Any) -> dict[str, Any]:
-    """Return the attributes of a part that drawing needs."""
-    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine", "is_enclosed")
-    return {name: getattr(part, name) for name in names}
+        rest = self.rest.astype(np.float64)
+        self.take_shape(stretched_walls(rest, self.shares, now.mandible()))
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:

@@ -11,19 +11,16 @@ from typing import Any
 import numpy as np
 
 from risorius.assets.fitting.warp import nearest_on
-from risorius.geometry.arrays import Floats32, Floats64, Integers32
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.read_only import read_only
 
+from .bent_part import BentPart, FaceNow, drawn_attributes
 
-class SkinPart:
-    """A part that follows the skin; it is drawn like any other part (render/parts.py)."""
 
-    is_enclosed = True
-    striation = None
-    vertices: Floats32
-    normals: Floats32
+class SkinPart(BentPart):
+    """A part that follows the skin."""
 
     def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
         """Bind a part with `roots` to the skin at rest, (V, 3), with triangles (F, 3)."""
@@ -31,14 +28,7 @@ class SkinPart:
             Embedding,
         )  # lists of controls do not need it
 
-        self.name = part.name
-        self.bone = part.bone
-        self.faces = part.faces
-        self.colours = part.colours
-        self.shine = part.shine
-        self.strand_radius = part.strand_radius
-        self.vertices = part.vertices
-        self.normals = part.normals
+        super().__init__(**drawn_attributes(part))
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
         roots, root_of = np.unique(part.roots, return_inverse=True)  # number of each vertex's root
@@ -62,10 +52,9 @@ class SkinPart:
             groups=root_of,
         )
 
-    def follow(self, skin: Floats64, bone: Floats64) -> None:
-        """Follow the present skin, (V, 3), relative to the part's bone, a matrix (4, 4)."""
-        there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
-        moved = self._embedding.evaluate(there)
+    def follow(self, now: FaceNow) -> None:
+        """Follow the present skin."""
+        moved = self._embedding.evaluate(now.skin_on(self.bone, self._near))
         assert moved.normals is not None
         self.vertices = read_only(moved.positions.astype(np.float32))
         self.normals = read_only(moved.normals)

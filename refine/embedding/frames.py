@@ -31,7 +31,7 @@ the sector has no direction.
 """
 
 
-class Fans(NamedTuple):
+class SectorFans(NamedTuple):
     """The triangles around S sectors, with K corners in all, for compiled code."""
 
     starts: Unsigned32
@@ -69,7 +69,7 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
 
 def fans_of_sectors(
     mesh: Connectivity, rest: Floats64, corner_sector: Integers64, used: Integers64
-) -> Fans:
+) -> SectorFans:
     """Return the fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
     around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
     number = np.searchsorted(used, corner_sector.ravel()[around])
@@ -83,11 +83,11 @@ def fans_of_sectors(
     weigh_corners(rest, mesh.faces, weights)
     shares = _shares(rest, fans, number, weights.ravel()[around])
     starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
-    return Fans(starts, np.ascontiguousarray(fans), shares)
+    return SectorFans(starts, np.ascontiguousarray(fans), shares)
 
 
 def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64) -> Floats64:
-    """Return `Fans.shares`; `sector`: of each corner, (K,); `weights`: of cross products, (K,)."""
+    """Return `SectorFans.shares`; `sector`: of each corner, (K,); `weights`: of crosses, (K,)."""
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]
     crosses = np.cross(first, second)
@@ -129,7 +129,7 @@ def unit_of(v: Vector) -> Vector:
 
 
 @njit
-def find_axes(first: int, last: int, positions: Floats64, fans: Fans, axes: Floats64) -> None:
+def find_axes(first: int, last: int, positions: Floats64, fans: SectorFans, axes: Floats64) -> None:
     """Write the axes of sectors, shape (S, 16).
 
     A row has three unit vectors (normal, first and second direction), the stretch, and the present

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from risorius import assets
+from risorius.app.scenes.bent_part import FaceNow
 from risorius.app.scenes.skin_part import SkinPart
 
 POSES = (
@@ -40,10 +41,10 @@ def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
     bone[:3, 3] = shift
     made = {part.name: part for part in assets.load("head").parts}
     for part in attached(scene):
-        part.follow(skin, np.eye(4))
+        part.follow(FaceNow(skin, {part.bone: np.eye(4)}))
         expected = turned.apply(np.array(made[part.name].vertices, np.float64)) + shift
         assert np.allclose(part.vertices, expected, atol=1e-3)
-        part.follow(skin, bone)
+        part.follow(FaceNow(skin, {part.bone: bone}))
         assert np.allclose(part.vertices, made[part.name].vertices, atol=1e-3)
 
 
@@ -60,8 +61,9 @@ def test_slivers_carry_nothing(scene):
             faces = np.vstack([needles, scene.faces]).astype(scene.faces.dtype)
             plain = SkinPart(part, skin, scene.faces)
             other = SkinPart(part, littered, faces)
-            plain.follow(1.1 * skin, np.eye(4))
-            other.follow(1.1 * littered, np.eye(4))
+            bones = {part.bone: np.eye(4)}
+            plain.follow(FaceNow(1.1 * skin, bones))
+            other.follow(FaceNow(1.1 * littered, bones))
             assert np.array_equal(other.vertices, plain.vertices)
 
 

@@ -1,0 +1,69 @@
+"""Parts that change their shape with the face."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from risorius.geometry.arrays import Floats32, Floats64, Integers, Integers32
+from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import read_only
+
+
+class FaceNow(NamedTuple):
+    """The present shape of a face, for its parts.
+
+    skin: the vertices [mm], (V, 3). bones: the motion of each bone, name -> a matrix (4, 4). jaw:
+    values of the jaw; all 0 at rest. tongue: the vertices of the tongue, (n, 3), in the space of
+    the mandible; the same array for the same shape, and None for a face without a tongue.
+    """
+
+    skin: Floats64
+    bones: Mapping[str, Floats64]
+    jaw: tuple[float, ...] = ()
+    tongue: Floats64 | None = None
+
+    def mandible(self) -> Floats64:
+        """Return the motion of the mandible relative to the cranium, a matrix (4, 4)."""
+        return np.linalg.inv(self.bones["cranium"]) @ self.bones["mandible"]
+
+    def skin_on(self, bone: str, numbers: Integers | slice = slice(None)) -> Floats64:
+        """Return vertices of the skin, by default all, in the space of a bone [mm]."""
+        matrix = self.bones[bone]
+        there: Floats64 = (self.skin[numbers] - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
+        return there
+
+
+@dataclass(eq=False, kw_only=True)
+class BentPart:
+    """A part that changes its shape; it is drawn like any other part (render/parts.py)."""
+
+    name: str
+    vertices: Floats32
+    normals: Floats32
+    faces: Integers32
+    colours: Floats32
+    bone: str
+    shine: float
+    is_enclosed: bool = True
+    strand_radius: float = 0.0
+    striation: None = None
+    roots: None = None
+
+    def follow(self, now: FaceNow) -> None:
+        """Take the shape for the present face, relative to the part's bone."""
+        raise NotImplementedError
+
+    def take_shape(self, vertices: Floats64) -> None:
+        """Set the vertices, shape (n, 3), and compute their normals."""
+        self.vertices = read_only(vertices.astype(np.float32))
+        self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
+
+
+def drawn_attributes(part: Any) -> dict[str, Any]:
+    """Return the attributes of a part that drawing needs."""
+    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
+    return {name: getattr(part, name) for name in (*names, "is_enclosed", "strand_radius")}
