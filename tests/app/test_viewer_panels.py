@@ -14,6 +14,7 @@ from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
 from risorius.app.viewer.interface.gui import THEMES
+from risorius.app.viewer.panels import mechanism
 from risorius.app.viewer.settings import SKINS, Display
 from risorius.assets.identities import NAMED
 
@@ -30,6 +31,7 @@ from .driving import (
     settle,
     show_controls,
     until,
+    write,
 )
 
 from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
@@ -133,6 +135,27 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     assert viewer.settings.display == changed
     click(viewer, "Reset all")
     assert isinstance(viewer.context.stage.refined.stream, render.Stream)
+
+
+def test_levels_that_would_hang_the_window_are_refused(viewer, monkeypatch):
+    """Numbers of levels that are too many, for the refiner or for the window, have a message."""
+    only_open(viewer, "Advanced")
+    in_panel(viewer, ("Refiner", "loop"))
+    only_open(viewer, "Refinement")
+    for typed, reason in (("9", "1 to 4"), ("3", "3 levels would make 129920 triangles")):
+        monkeypatch.setattr(mechanism, "MOST_TRIANGLES", 100_000)
+        click(viewer, "levels")
+        press_keys(viewer, "ctrl+a")
+        write(viewer, typed)
+        press_keys(viewer, "Return")
+        assert reason in viewer.messages.text
+        assert viewer.context.stage.refined.triangle_count == 4 * 2030
+    click(viewer, "levels")
+    press_keys(viewer, "ctrl+a")
+    write(viewer, "2")
+    press_keys(viewer, "Return")
+    assert not viewer.messages.text
+    assert viewer.settings.display.options["loop"]["levels"] == 2
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -14,6 +14,7 @@ from risorius import refine, render
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
+from ...errors import UserError
 from ...refining.presets import PRESETS, STATIC, STATIC_LABEL, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, OF, can_detail, options_of
 from ...text import counted
@@ -44,6 +45,8 @@ HINTS = {
     "Dissect": "the side of the face whose skin is translucent",
 }
 NUMBERS = ("integer", "number")  # kinds of options that are numbers
+# Chosen: a second for each frame on software OpenGL, so that the number can be lowered again.
+MOST_TRIANGLES = 600_000
 
 
 class MechanismPanel:
@@ -54,6 +57,7 @@ class MechanismPanel:
         self._settings = app.settings
         self._stage = app.stage
         self._view = app.view
+        self._messages = app.messages
         self._times = app.times
         self._rows = DisplayRows(app, HINTS)
         self._before_reset: Display | None = None
@@ -161,8 +165,9 @@ class MechanismPanel:
             self._rows.begin(label)
             is_changed, chosen = imgui.input_int(f"##{label}", int(value))
             self._gui.remember(label)
-            if is_changed and option.allows(chosen):
-                put(chosen)
+            if is_changed:
+                check = partial(_check_count, name, option, chosen, len(scene.faces))
+                self._messages.carry_out(partial(_put_checked, check, put, chosen))
         elif option.kind == "number":
             limits = option.least or 0.0, 2.0 * float(default) or 1.0  # the look's is the middle
             digits = max(3, 1 - math.floor(math.log10(limits[1])))
@@ -230,6 +235,28 @@ class MechanismPanel:
             if label == "Frame" and milliseconds:
                 imgui.same_line()
                 muted(self._gui, f"({1e3 / milliseconds:.0f} a second)")
+
+
+def _check_count(name: str, option: refine.Option, count: int, face_count: int) -> None:
+    """Raise UserError for a forbidden number, or for more triangles than a window can draw.
+
+    face_count: number of triangles of the simulated mesh.
+    """
+    try:
+        option.check(count)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    triangle_count = face_count * 4**count
+    if name == "levels" and triangle_count > MOST_TRIANGLES:  # those of all edges
+        raise UserError(
+            f"{count} levels would make {triangle_count} triangles of {face_count}; the window "
+            f"draws {MOST_TRIANGLES} at most"
+        )
+
+
+def _put_checked(check: Callable[[], None], put: Callable[[int], None], count: int) -> None:
+    check()
+    put(count)
 
 
 def choices_of(option: str) -> tuple[str, ...]:
