@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.picture.stage import LEVELS
+from risorius.app.viewer.picture.stage import COARSEST_IDLE_LEVEL, LEVELS
 from risorius.app.viewer.session.physics import SLEEP_DELAY
 from risorius.app.viewer.window.schedule import Schedule
 
@@ -65,7 +65,7 @@ def test_slow_frames_lower_the_detail_of_idle_life(viewer, monkeypatch):
 
     It had all pixels, so that a face blinked at three frames a second beside other programs.
     """
-    coarse = LEVELS[-1]
+    coarse = LEVELS[COARSEST_IDLE_LEVEL]
     assert until(viewer, lambda: viewer.schedule.is_left_alone)
     with monkeypatch.context() as patch:
         patch.setattr(Schedule, "spent", 0.2)

@@ -286,6 +286,7 @@ LEVELS = (
 )
 # Processor time of a whole frame at 1280 x 720, relative to the first level (measured 2026-11-29).
 COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
+COARSEST_IDLE_LEVEL = 2  # chosen by eye: with fewer pixels, outlines of a face at rest have steps
 PATIENCE_FRAMES = 4  # slow frames in a row that reduce the detail
 CALM_FRAMES = 40  # fast frames in a row after which a moving picture becomes finer
 
@@ -304,6 +305,11 @@ class LevelOfDetail:
     def detail(self) -> render.Detail:
         """The detail for a scene that moves."""
         return LEVELS[self.level]
+
+    @property
+    def unhurried(self) -> render.Detail:
+        """The detail for idle life, which hides missing pixels less than a motion does."""
+        return LEVELS[min(self.level, COARSEST_IDLE_LEVEL)]
 
     def begin_motion(self) -> None:
         """Note that a motion begins, when nobody notices a rise of the detail."""
@@ -374,7 +380,9 @@ class Painter:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
         if has_changed:
-            self._draw(self.level_of_detail.detail, state)
+            level = self.level_of_detail
+            is_unhurried = is_alive and state == painted
+            self._draw(level.unhurried if is_unhurried else level.detail, state)
         elif detail != FULL_DETAIL and self._calm_for > CALM_SECONDS and not is_alive:
             self._draw(FULL_DETAIL, state)
         return has_changed
