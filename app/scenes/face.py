@@ -50,7 +50,7 @@ class FaceScene(Scene):
         rest = face.rest_positions
         super().__init__(self.name, faces, rest, skin=_images_of(self.head), face=face)
         self.landmarks = self.head.landmarks
-        self.called = _name_of(self.head)
+        self.called = BUILT_IN if isinstance(self.head, assets.Head) else self.head.called or OWN
         self._parts = _parts_of(self.head, rest, faces)
         self._are_bent = False  # whether parts have the face's present shape
         self.framing = self._framing()
@@ -140,8 +140,7 @@ def _on_skin(part: Any, rest_positions: Floats64, faces: Any) -> Any:
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
     """Return the images on the skin of a head."""
-    person = head if isinstance(head, Person) else None
-    in_tone = None if person is None else person.in_tone
+    in_tone = head.in_tone if isinstance(head, Person) else None
     is_built_in = isinstance(head, assets.Head)
     return SkinImages(
         uv=head.uv,
@@ -163,10 +162,3 @@ def _parts_of(
     """Return the parts of a head, some of which can bend, with the built-in head's hair."""
     parts = tuple(_on_skin(part, rest_positions, faces) for part in shaded_mouth(head.parts))
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts
-
-
-def _name_of(head: assets.Head | FittedHead) -> str:
-    """Return the name by which users know a head."""
-    if isinstance(head, assets.Head):
-        return BUILT_IN
-    return head.called or OWN

@@ -61,9 +61,7 @@ class Tongue(BentPart):
 class MouthWalls(BentPart):
     """The walls of the mouth, which stretch between both jaws."""
 
-    shares: Floats32  # share of the mandible's motion for each vertex, shape (n,)
-    rest: Floats32
-    resting_normals: Floats32
+    at_rest: Any  # Part
     jaw: tuple[float, ...] = ()  # values of the jaw at the last `follow`
 
     def follow(self, now: FaceNow) -> None:
@@ -72,11 +70,11 @@ class MouthWalls(BentPart):
             return
         self.jaw = now.jaw
         if not any(now.jaw):
-            self.vertices = self.rest
-            self.normals = self.resting_normals
+            self.vertices = self.at_rest.vertices
+            self.normals = self.at_rest.normals
             return
-        rest = self.rest.astype(np.float64)
-        self.take_shape(stretched_walls(rest, self.shares, now.mandible()))
+        rest = self.at_rest.vertices.astype(np.float64)
+        self.take_shape(stretched_walls(rest, self.at_rest.mandible_shares, now.mandible()))
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
@@ -91,11 +89,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
             drawn = {**drawn_attributes(part), "colours": colours, "shine": 0.42}  # wet
             return Tongue(**drawn, unlit=unlit, front=float(front))
         if part.mandible_shares is not None and part.name != MASK:
-            shares = part.mandible_shares
-            rest = part.vertices
-            return MouthWalls(
-                **drawn_attributes(part), shares=shares, rest=rest, resting_normals=part.normals
-            )
+            return MouthWalls(**drawn_attributes(part), at_rest=part)
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)
