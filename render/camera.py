@@ -183,8 +183,8 @@ class OrbitCamera:
             depth = self.distance - z
             across = x / depth
             along = y / depth
-            middle = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
-            self.target = self.target + self.distance * (middle @ axes[:2])
+            centre = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
+            self.target = self.target + self.distance * (centre @ axes[:2])
         x, y, z = axes @ (points - self.target).T
         self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
         self.distance = max(self.distance, float(z.max()) + 0.05 * self.scene_radius)
@@ -261,10 +261,10 @@ class PlacedView:
     def depth_range(self) -> tuple[float, float]:
         """Smallest depth of the scene on the target, 0 to 1, and the reciprocal of its range."""
         camera = self.camera
-        middle = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
+        centre_distance = float(np.dot(camera.eye - camera.scene_centre, camera.axes()[2]))
         reach = 1.3 * camera.scene_radius  # a face moves beyond its rest pose
         least_distance = 1e-3 * camera.scene_radius
-        distances = np.maximum([middle - reach, middle + reach], least_distance)
+        distances = np.maximum([centre_distance - reach, centre_distance + reach], least_distance)
         at_infinity = 1.0 - self.projection[2, 2]
         depths = np.clip(0.5 * (at_infinity + self.projection[3, 2] / distances), 0.0, 1.0)
         least_reach = 1e-6  # for a scene behind the camera
@@ -277,10 +277,10 @@ class PlacedView:
         Returns its value at depth 0, and its slope. Depths are fractions of `depth_range`. The
         difference corresponds to 0.7 of a pixel's width at this depth.
         """
-        share = 0.7 / self.camera.focal(self.viewport[2] / self.viewport[3], self.viewport[3])
+        fraction = 0.7 / self.camera.focal(self.viewport[2] / self.viewport[3], self.viewport[3])
         least, scale = self.depth_range
         depth_ahead = 0.5 * (1.0 - float(self.projection[2, 2])) - least
-        return share * scale * depth_ahead, -share
+        return fraction * scale * depth_ahead, -fraction
 
 
 def box_corners(points: npt.NDArray[Any]) -> Floats64:

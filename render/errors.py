@@ -46,4 +46,4 @@ def diagnose(attempt: str, raw: object) -> GLError:
     for pattern, why, cure in _DIAGNOSES:
         if re.search(pattern, text):
             return GLError(f'{attempt} failed: {why} ("{text}"). Cure: {unset or cure}')
-    return GLError(f'{attempt} failed ("{text}"). Cure: `risorius doctor` shows what there is')
+    return GLError(f'{attempt} failed ("{text}"). Cure: `risorius doctor` shows what works here')

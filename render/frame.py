@@ -153,8 +153,8 @@ class Skin:
         """Raise ValueError if the stream now holds another mesh."""
         if self.stream.mesh is not self.mesh:
             raise ValueError(
-                "the stream of this frame was filled anew since the frame was made; make the frame "
-                "after the upload, and draw it before the next one"
+                "the stream of this frame was filled again since the frame was made; make the "
+                "frame after an upload, and draw it before the next upload"
             )
 
     def shown_maps(self, style: Style) -> dict[BumpMap, float]:

@@ -114,15 +114,15 @@ def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats
     # The 40th power of the cosine is a lobe of about 15 degrees. Repeated squaring is faster than
     # a power.
     gathered = (eighth**2) ** 2 * eighth @ lightness
-    middle = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
-    cosine = away @ middle
+    brightest = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
+    cosine = away @ brightest
     is_near = cosine > np.cos(np.radians(32.0))
     is_beside = ~is_near & (cosine > np.cos(np.radians(50.0)))
     level = solid[is_beside] @ radiance[is_beside] / solid[is_beside].sum()
     excess = np.maximum(radiance - level, 0.0) * is_near[:, None]
     toward = (_luminance(excess) * solid) @ away
     length = np.linalg.norm(toward)
-    return (toward / length if length > 0.0 else middle), excess
+    return (toward / length if length > 0.0 else brightest), excess
 
 
 def _harmonics(normals: Floats64) -> Floats64:
@@ -197,8 +197,8 @@ def _spot(away: Floats64, *, azimuth: float, elevation: float, width: float) -> 
     """
     across = np.radians(azimuth)
     up = np.radians(elevation)
-    middle = [np.cos(up) * np.sin(across), np.sin(up), -np.cos(up) * np.cos(across)]
-    angle = np.degrees(np.arccos(np.clip(away @ middle, -1.0, 1.0)))
+    direction = [np.cos(up) * np.sin(across), np.sin(up), -np.cos(up) * np.cos(across)]
+    angle = np.degrees(np.arccos(np.clip(away @ direction, -1.0, 1.0)))
     return np.asarray(np.exp(-0.5 * (angle / width) ** 2))
 
 

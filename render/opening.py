@@ -53,19 +53,19 @@ def set_rim(program: moderngl.Program, name: str, rim: Floats64, view: PlacedVie
 
 
 def _set_lids(program: moderngl.Program, rim: Floats64) -> None:
-    """Set both halves of a rim, in view space, as cubic polynomials over the corners' line."""
+    """Set both halves of a rim, in view space, as cubics over the line between the corners."""
     half = len(rim) // 2
     first = rim[0]
     last = rim[half]
-    middle = 0.5 * (first + last)
+    centre = 0.5 * (first + last)
     width = max(float(np.linalg.norm(last - first)), 1e-9)
     along = (last - first) / width
-    off = rim - middle
+    off = rim - centre
     outward = np.cross(np.roll(off, -1, axis=0), off).sum(axis=0)
     up = np.cross(outward, along)
     up /= max(float(np.linalg.norm(up)), 1e-9)
     for name, axis in (("opening_x", along), ("opening_y", up)):
-        write_uniform(program, name, np.append(axis, -axis @ middle) / (0.5 * width))
+        write_uniform(program, name, np.append(axis, -axis @ centre) / (0.5 * width))
     x = off @ along / (0.5 * width)
     y = off @ up / (0.5 * width)
     halves = {"upper_lid": range(half + 1), "lower_lid": (*range(half, len(rim)), 0)}

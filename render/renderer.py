@@ -350,10 +350,10 @@ class Renderer:
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         drawn = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with blending(self._gl):
-            for depth_func, share in ((">", lines.hidden_opacity), ("<=", lines.opacity)):
-                if share > 0.0:
+            for depth_func, opacity in ((">", lines.hidden_opacity), ("<=", lines.opacity)):
+                if opacity > 0.0:
                     self._gl.depth_func = depth_func
-                    program["opacity"] = share
+                    program["opacity"] = opacity
                     drawn.render(moderngl.LINES)
 
     @property

@@ -291,10 +291,10 @@ def _mean(
     """Interpolate the two values of a triangle's corners at a point."""
     whole = one = two = 0.0
     for k in range(3):
-        share = _at(edges[k], x, y)
-        whole += share
-        one += share * values[triangles[triangle, k], 0]
-        two += share * values[triangles[triangle, k], 1]
+        weight = _at(edges[k], x, y)
+        whole += weight
+        one += weight * values[triangles[triangle, k], 0]
+        two += weight * values[triangles[triangle, k], 1]
     return one / whole, two / whole
 
 

@@ -144,7 +144,7 @@ class MeshBuffers:
         """Raise ValueError if bumps shall show, but the stream has no columns for them."""
         if has_bumps and self.columns < BUMPS.stop:
             raise ValueError(
-                f"bumps on a stream of {self.columns} columns; their amounts are columns 9 and 10: "
+                f"bumps on a stream of {self.columns} columns; they need the columns 9 to 16: "
                 "lend a stream of 16 columns, or upload without bumps"
             )
 
@@ -174,7 +174,7 @@ class MeshBuffers:
         """Raise ValueError if the stream has no columns for fading."""
         if self.columns < 18:
             raise ValueError(
-                f"a fade on a stream of {self.columns} columns; it is columns 17 and 18: lend a "
+                f"a fade on a stream of {self.columns} columns; it needs columns 17 and 18: lend a "
                 "stream of 18 columns, or draw without a fade"
             )
 

@@ -143,8 +143,8 @@ class BumpMap(_Mipmaps):
 def _values() -> Floats32:
     """Return linear light of the 256 sRGB bytes, then 256 equal steps from 0 to 1, (512,)."""
     lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
-    shares = np.arange(256, dtype=np.float32) / np.float32(255.0)
-    return np.concatenate([lights, shares])
+    fractions = np.arange(256, dtype=np.float32) / np.float32(255.0)
+    return np.concatenate([lights, fractions])
 
 
 def _lit_texels(image: Image, occlusion: Image) -> Image:

@@ -38,7 +38,7 @@ from .value_types import PATH, Size
     type=click.IntRange(0, 2**32 - 1),
     default=0,
     show_default=True,
-    help="Seed of the random numbers; another one makes other samples.",
+    help="Seed of the random numbers; another seed makes other samples.",
 )
 @click.option(
     "--passes",
@@ -60,8 +60,8 @@ from .value_types import PATH, Size
 @click.option(
     "--light",
     type=PATH,
-    help="A map of the light from all directions, .hdr or .exr, or a folder of such maps; by "
-    "default the lights of the table.",
+    help="A light map (.hdr or .exr), or a folder of light maps; by default the lights of the "
+    "table.",
 )
 @click.option(
     "--degrade",

@@ -61,8 +61,8 @@ class Rigging:
     )
     take: Path | None = option(
         type=PATH,
-        help="A recording or script with which sums of shapes are compared, and for which "
-        "--correctives are chosen. By default sums are compared with a few words.",
+        help="A recording or script on which sums of shapes are compared with the simulation, and "
+        "for which --correctives are chosen; by default a few built-in words.",
     )
     quiet: bool = option(is_flag=True, help="Print nothing but errors.")
 
@@ -74,7 +74,7 @@ class Rigging:
 )
 @packed(Rigging)
 def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
-    """Make an avatar of HEAD: its own vertices, with named shapes.
+    """Make an avatar of HEAD: a mesh with the same vertices, and with named shapes.
 
     HEAD is a file, or the number or name of a person; by default it is the built-in head. Lines on
     the error stream report the role of each piece of the file, and errors of combined shapes.

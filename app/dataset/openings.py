@@ -60,23 +60,23 @@ def opening(near: Array, edge: Array) -> float:
     )
 
 
-def around(triangles: Array, middle: Array, reach: float) -> Array:
+def around(triangles: Array, centre: Array, reach: float) -> Array:
     """Return the triangles (n, 3, 3) whose centres lie within `reach` [mm] of a point (3,)."""
-    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
+    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - centre, axis=1) < reach]
     return near
 
 
-def _widest_gap(low: Array, high: Array, middle: float) -> float:
+def _widest_gap(low: Array, high: Array, height: float) -> float:
     """Return the greatest height [mm] of a gap between the triangles that a plane cuts.
 
-    The gap must begin near the height `middle`. low, high: heights between which the plane cuts
-    each triangle [mm], (n,).
+    The gap must begin near `height`. low, high: heights between which the plane cuts each triangle
+    [mm], (n,).
     """
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
     window = 5.0  # [mm] from the lower edge within which the opening must begin
-    return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
+    return float(open_above[np.abs(reached - height) < window].max(initial=0.0))
 
 
 def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
@@ -97,7 +97,7 @@ def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bo
     start_x = triangles[:, :, 0]
     run = end[:, :, 0] - start_x
     is_flat = run == 0.0
-    share = (x - start_x) / np.where(is_flat, np.inf, run)
-    points = triangles + share[:, :, None] * (end - triangles)
-    meets = (share >= 0.0) & (share <= 1.0) & ~is_flat
+    fraction = (x - start_x) / np.where(is_flat, np.inf, run)
+    points = triangles + fraction[:, :, None] * (end - triangles)
+    meets = (fraction >= 0.0) & (fraction <= 1.0) & ~is_flat
     return points, meets

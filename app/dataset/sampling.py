@@ -82,7 +82,8 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         degrees = getattr(table.head, angle) * _bounded_normal(heads)
         controls[f"head_{angle}"] = degrees / DEGREES[f"head_{angle}"]
     aside = [
-        getattr(table.eyes, way) * _bounded_normal(heads) for way in ("horizontal", "vertical")
+        getattr(table.eyes, direction) * _bounded_normal(heads)
+        for direction in ("horizontal", "vertical")
     ]
     is_at_camera = heads.random() < table.eyes.at_camera
     ranges = [getattr(table.camera, each) for each in ("yaw", "pitch", "zoom", "field_of_view")]
@@ -143,8 +144,8 @@ class _Face:
             name = chosen(random, {name: row.share for name, row in rows.items()})
             self.one_sided = float(random.random() < rows[name].one_sided)
             strength = self._intensity()
-            for unit, share in rows[name].units.items():
-                if random.random() < share:
+            for unit, probability in rows[name].units.items():
+                if random.random() < probability:
                     self._add(unit, strength * random.uniform(0.75, 1.1))
             return name
         if kind == "unit":
@@ -163,22 +164,22 @@ class _Face:
             unit = waiting.pop(0)
             if unit in self.controls or not self._add(unit, self._intensity()):
                 continue
-            for other, share in self._table.together.get(unit, {}).items():
-                if random.random() < share:
+            for other, probability in self._table.together.get(unit, {}).items():
+                if random.random() < probability:
                     waiting.append(other)
 
     def _speak(self) -> str:
         """Add one viseme or a blend of two, and in half of all cases units of brows and eyes."""
         random = self._random
         names = [chosen(random, self._table.speech) for _ in range(2)]
-        share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
+        blend = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
         strength = random.uniform(0.5, 1.0)
         brows_and_eyes = ("AU1", "AU2", "AU4", "AU5", "AU6", "AU7")
         units = {name: self._table.units.get(name, 0.0) for name in brows_and_eyes}
         if random.random() < 0.5 and any(units.values()):
             for name in dict.fromkeys(chosen(random, units) for _ in range(2)):
                 self._add(name, self._intensity())
-        parts = [share, 1.0 - share] if share < 1.0 else [share]
+        parts = [blend, 1.0 - blend] if blend < 1.0 else [blend]
         spoken = names[: len(parts)]
         for name, part in zip(spoken, parts, strict=True):
             self.controls[name] = self.controls.get(name, 0.0) + strength * part

@@ -194,7 +194,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """Return a camera that centres the present head of a scene, and then moves by the shift.
+    """Return a camera that centres the present head of a scene, and is then moved by a shift.
 
     If landmarks would lie outside the picture of `size` pixels, the camera moves again.
     """

@@ -65,11 +65,11 @@ class Backgrounds:
         size: width and height of this part [pixels]. A file that is no picture raises UserError.
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
-        # `share` is the visible fraction of the picture's limiting side, at least 0.6.
-        share, across, along = random.uniform([0.6, 0.0, 0.0], 1.0)
+        # `fraction` is the visible part of the picture's limiting side, at least 0.6.
+        fraction, across, along = random.uniform([0.6, 0.0, 0.0], 1.0)
         with _readable(path) as opened:
             whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
-        scale = share * min(whole.width / size[0], whole.height / size[1])
+        scale = fraction * min(whole.width / size[0], whole.height / size[1])
         width = scale * size[0]
         height = scale * size[1]
         left = across * (whole.width - width)

@@ -119,11 +119,11 @@ class FileBody:
         mandible: matrix (4, 4). Returns positions [mm], (n, 3).
         """
         points = self.rest[numbers]
-        share = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
+        weights = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
         # At the throat the weight is 0.
-        share *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)
-        moved: Floats64 = points + share[:, None] * (moved_points(mandible, points) - points)
+        weights *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)
+        moved: Floats64 = points + weights[:, None] * (moved_points(mandible, points) - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SkinPart:
@@ -170,8 +170,10 @@ class _Bag:
     def stretch(self, moved: Floats64, rest: Floats64) -> None:
         """Write positions of the other half into `moved` (V, 3), which has all other positions."""
         if self._solver is not None:
-            ways = (moved - rest)[self._others]
-            moved[self._free] = rest[self._free] - self._solver.solve(self._to_others @ ways)
+            displacements = (moved - rest)[self._others]
+            moved[self._free] = rest[self._free] - self._solver.solve(
+                self._to_others @ displacements
+            )
 
 
 def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:

@@ -40,20 +40,20 @@ def pose_of(scene: FaceScene) -> Pose:
     """Return the present pose of a scene."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM])
-    share = scene.face.head_weight
+    weights = scene.face.head_weight
     return Pose(
-        without_head_pose(np.array(scene.positions), bones[CRANIUM], share),
+        without_head_pose(np.array(scene.positions), bones[CRANIUM], weights),
         {name: to_cranium @ matrix for name, matrix in bones.items()},
         {part.name: part.vertices for part in scene.parts},
     )
 
 
-def without_head_pose(skin: Floats64, cranium: Floats64, share: Floats64) -> Floats64:
-    """Remove the cranium's motion from skin (V, 3) that follows it by weights `share` (V,)."""
+def without_head_pose(skin: Floats64, cranium: Floats64, weights: Floats64) -> Floats64:
+    """Remove the cranium's motion from skin (V, 3) that follows it by `weights` (V,)."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
-    turns = np.eye(3) + share[:, None, None] * (cranium[:3, :3] - np.eye(3))
-    unmoved = (skin - share[:, None] * cranium[:3, 3])[:, :, None]
+    turns = np.eye(3) + weights[:, None, None] * (cranium[:3, :3] - np.eye(3))
+    unmoved = (skin - weights[:, None] * cranium[:3, 3])[:, :, None]
     return np.asarray(np.linalg.solve(turns, unmoved)[:, :, 0])
 
 

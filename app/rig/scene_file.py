@@ -32,11 +32,11 @@ def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) 
     roots = []
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}
-        share = None
+        weights = None
         if piece.bone is None and scene.face is not None:
             node["skin"] = skeleton.skin
-            share = piece.surface.carried(scene.face.head_weight)
-        node["mesh"] = add_mesh(glb, scene, piece, skeleton.pivot(piece.bone), share)
+            weights = piece.surface.carried(scene.face.head_weight)
+        node["mesh"] = add_mesh(glb, scene, piece, skeleton.pivot(piece.bone), weights)
         number = glb.add("nodes", node)
         if piece.bone is None:
             roots.append(number)

@@ -40,10 +40,12 @@ class Piece:
     weights: Floats64
 
 
-def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floats64 | None) -> int:
+def add_mesh(
+    glb: Glb, scene: Scene, piece: Piece, origin: Floats64, weights: Floats64 | None
+) -> int:
     """Add a mesh whose vertices are relative to `origin` [mm], (3,); return its number.
 
-    share: weight of the head's motion at each vertex, 0 to 1, (V,); None if there is no head.
+    weights: weight of the head's motion at each vertex, 0 to 1, (V,); None if there is no head.
     """
     surface = piece.surface
     faces: npt.NDArray[Any] = surface.faces
@@ -71,13 +73,13 @@ def add_mesh(glb: Glb, scene: Scene, piece: Piece, origin: Floats64, share: Floa
         attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
     if surface.colours is not None:
         attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
-    if share is not None:
+    if weights is not None:
         # Refinement sums weights, so rounding may exceed 0 or 1.
-        share = np.clip(share, 0.0, 1.0)
-        none = np.zeros_like(share)
-        joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
+        weights = np.clip(weights, 0.0, 1.0)
+        none = np.zeros_like(weights)
+        joints = np.column_stack([none, weights > 0.0, none, none]).astype(np.uint8)
         attributes["JOINTS_0"] = of_vertices(joints)
-        attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
+        attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - weights, weights, none, none]))
     # 16 bits suffice for this number of vertices.
     short = np.uint16 if len(vertices) <= 65535 else np.uint32
     primitive: dict[str, Any] = {

@@ -41,7 +41,8 @@ def placed(points: Floats64, known: Head) -> Similarity:
     if is_far:
         raise AssetError(
             f"the landmarks are no face: they are {off[ORIENTING].mean():.0f} mm off on average, "
-            f"landmark {off.argmax()} {off.max():.0f} mm; give the 68 iBug points in their order"
+            f"and landmark {off.argmax()} by {off.max():.0f} mm; give the 68 iBug points in their "
+            "order"
         )
     if similarity.is_mirrored:
         raise AssetError(
@@ -61,16 +62,17 @@ def is_face(points: Floats64) -> bool:
 
 def _check_different(points: Floats64, template: Floats64) -> None:
     """Raise AssetError if two landmarks coincide that are far apart on any face; (68, 3) [mm]."""
-    ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
+    distances, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
     # Landmarks with at least this distance on the built-in head must not coincide, because a muscle
     # between them needs a length.
     least_built_in_distance = 30.0  # [mm]
     a, b = np.unravel_index(
-        (ways + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(), ways.shape
+        (distances + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(),
+        distances.shape,
     )
     least_distance = 1.0  # [mm]
-    if ways[a, b] < least_distance:
+    if distances[a, b] < least_distance:
         raise AssetError(
-            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart; on the built-in head "
+            f"landmarks {a} and {b} are {distances[a, b]:.2g} mm apart; on the built-in head "
             f"they are {known[a, b]:.0f} mm apart: give each its own place"
         )

@@ -99,8 +99,8 @@ def _filling(
     near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
     used = np.unique(faces[near])
     ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
-    for share in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
-        shrunk = centre + share * (edge - centre)
+    for scale in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
+        shrunk = centre + scale * (edge - centre)
         inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
         # Add triangles outside the curve, between it and a side of the polygon.
         corners = np.append(faces[inside], ends)

@@ -86,8 +86,8 @@ def placing(known: Known) -> Similarity:
             if less.mean() <= most_mean_distance and not other.is_mirrored:
                 raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
         raise AssetError(
-            f"these points are no face: they are {off.mean():.0f} mm off on average, landmark "
-            f"{sorted(known)[int(off.argmax())]} {off.max():.0f} mm; give each its own place"
+            f"these points are no face: they are {off.mean():.0f} mm off on average, and landmark "
+            f"{sorted(known)[int(off.argmax())]} by {off.max():.0f} mm; give each its own place"
         )
     if similarity.is_mirrored:
         raise AssetError(f"left and right are swapped, or the mesh is mirrored: {right}")
@@ -148,9 +148,9 @@ def _feet(
 
 def centred(vertices: Floats64, radius: float) -> Similarity:
     """Return the similarity that moves a mesh (V, 3) to the origin and scales it to `radius`."""
-    middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
-    return Similarity(scale, np.eye(3), -scale * middle)
+    centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+    scale = radius / max(float(np.linalg.norm(vertices - centre, axis=1).max()), 1e-12)
+    return Similarity(scale, np.eye(3), -scale * centre)
 
 
 def axes_turned() -> list[Floats64]:

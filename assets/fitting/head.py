@@ -171,8 +171,8 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
     known = recognised(mesh)
     if known is None:
         raise UnfinishedError(
-            f"{named(path)}: needs a landmark file, because its vertices are those of no known "
-            "head; mark the landmarks in the window: `risorius view --head MESH`"
+            f"{named(path)}: needs a landmark file, because the topology of its mesh is unknown; "
+            "mark the landmarks in the window: `risorius view --head MESH`"
         )
 
     def marks_of(parted: Mesh) -> Marks:

@@ -32,11 +32,11 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     ears = [ear for ear in found if ear is not None]
     if not ears:
         return None
-    middle, front = np.mean(ears, axis=0)
+    height, front = np.mean(ears, axis=0)
     above_middle = 5.0  # [mm] from an ear's centre up to the canal's upper edge
     before = 14.0  # [mm] from the root of the helix forward to the condyle
     # Size and height of ears vary more than the position of the joint, so this position is bounded.
-    up = np.clip(middle + above_middle, -30.0, -8.0)
+    up = np.clip(height + above_middle, -30.0, -8.0)
     forward = np.clip(front + before, -75.0, -40.0)
     out = 0.36 * USUAL_WIDTH
     return np.asarray(eyes + scale * np.array([[-out, up, forward], [out, up, forward]]))
@@ -65,15 +65,15 @@ def opening_as_people(
     receded -= gains * jaw["opening_glide"][2]
     gain = float(np.interp(opening * reach, np.hypot(sunk, receded), gains))
     jaw["opening_deg"] *= gain
-    jaw["opening_glide"] = [gain * way for way in jaw["opening_glide"]]
+    jaw["opening_glide"] = [gain * component for component in jaw["opening_glide"]]
     return {**rig, "jaw": jaw}
 
 
 def _spread(places: Floats64, faces: Integers32) -> Floats64:
     """Return points on triangles, (n, 3), so dense that every section contains some."""
-    shares = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
+    weights = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
     corners = places[faces]
-    return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in shares])
+    return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in weights])
 
 
 def _ear(points: Floats64) -> tuple[float, float] | None:

@@ -273,8 +273,8 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
 def check_lips(skin: SkinPiece) -> None:
     """Raise AssetError if the landmarks of each inner lip lie on the skin of the other lip."""
     inner = skin.landmarks[np.ravel(INNER_LIPS)]
-    ways = path_lengths(skin.vertices, skin.faces, inner)
-    to_upper, to_lower = (ways[:, skin.landmarks[list(lip)]].min(axis=1) for lip in OUTER_LIPS)
+    paths = path_lengths(skin.vertices, skin.faces, inner)
+    to_upper, to_lower = (paths[:, skin.landmarks[list(lip)]].min(axis=1) for lip in OUTER_LIPS)
     is_upper = to_upper < to_lower
     if not is_upper[:3].any() and is_upper[3:].all():
         raise AssetError(GROUPS[-3].complaint)

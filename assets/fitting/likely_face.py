@@ -73,8 +73,8 @@ class LikelyFace:
         count = len(self._modes)
         known = self.head.landmarks[self.numbers]
         pointing = 0.7  # [mm]; usual error of known landmarks
-        ways = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
-        rows = [np.hstack([ways, -_motions(self.given)]) / pointing]
+        displacements = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
+        rows = [np.hstack([displacements, -_motions(self.given)]) / pointing]
         right = [(self.given - vertices[known]).ravel() / pointing]
         rows.append(np.eye(count, count + 7))
         right.append(-self._weights)

@@ -183,8 +183,8 @@ def check_openings(skin: SkinPiece) -> None:
         )
     corners = skin.vertices[skin.faces]
     for side, pairs in LID_PAIRS.items():
-        middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
-        if is_covered(corners, middle) and not _is_slit(skin, side):
+        centre = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
+        if is_covered(corners, centre) and not _is_slit(skin, side):
             raise CoveredError(
                 f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
                 f"{pairs[0][1]}; cut the mesh open between the lids (a head with its eyes open)"

@@ -49,14 +49,14 @@ class FittedSkin:
     pieces: tuple[Floats64, ...] = ()
 
 
-def stretched_walls(walls: Floats64, shares: ShareArray, mandible: Floats64) -> Floats64:
+def stretched_walls(walls: Floats64, weights: ShareArray, mandible: Floats64) -> Floats64:
     """Move points of walls [mm], (n, 3), by weights of the mandible's motion.
 
-    shares: weights, 0 (fixed to the skull) to 1 (fixed to the mandible), (n,). mandible: motion
+    weights: 0 (fixed to the skull) to 1 (fixed to the mandible), (n,). mandible: motion
     relative to the skull, a matrix (4, 4) for column vectors.
     """
     moved = moved_points(mandible, walls)
-    return np.asarray(walls + shares[:, None] * (moved - walls))
+    return np.asarray(walls + weights[:, None] * (moved - walls))
 
 
 def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
@@ -68,9 +68,9 @@ def opened_jaws(axis: Floats64, rig: Mapping[str, Any]) -> list[Floats64]:
     right, left = axis
     hinge = (left - right) / np.linalg.norm(left - right)
     opened = []
-    for share in (0.5, 1.0):
-        angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))
-        glide = share * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
+    for fraction in (0.5, 1.0):
+        angle = fraction * np.radians(float(jaw.get("opening_deg", 20.0)))
+        glide = fraction * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
         matrix = np.eye(4)
         matrix[:3, :3] = scipy.spatial.transform.Rotation.from_rotvec(angle * hinge).as_matrix()
         matrix[:3, 3] = right - matrix[:3, :3] @ right + glide
@@ -92,8 +92,8 @@ def within_skin(
     if not parts:
         return []
     walls = np.concatenate([part.vertices for part in parts]).astype(np.float64)
-    shares: ShareArray = np.concatenate([_mandible_shares(part) for part in parts])
-    middle = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
+    weights: ShareArray = np.concatenate([_mandible_shares(part) for part in parts])
+    centre = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
     skins = [_closed(fitted, mouth)]
     for mandible in jaws:
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
@@ -101,13 +101,13 @@ def within_skin(
     wall_depth = 6.0  # [mm] behind the skin
     least_cosine = 0.35  # bound of the cosine between the skin's normal and a ray
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
-        away = stretched_walls(walls, shares, mandible) - middle
+        away = stretched_walls(walls, weights, mandible) - centre
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
-        ray, distance, cosine = exits(middle, away / length[:, None], vertices, faces)
+        ray, distance, cosine = exits(centre, away / length[:, None], vertices, faces)
         room = np.full(len(walls), np.inf)
         np.minimum.at(room, ray, distance - wall_depth / np.maximum(cosine, least_cosine))
         nearer = np.clip(room / length, 0.0, 1.0)
-        walls = middle + nearer[:, None] * (walls - middle)
+        walls = centre + nearer[:, None] * (walls - centre)
     ends = np.cumsum([len(part.vertices) for part in parts])[:-1]
     placed = zip(parts, np.split(walls.astype(np.float32), ends), strict=True)
     return [replace(part, vertices=vertices) for part, vertices in placed]

@@ -24,8 +24,8 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     eyes = vertices[landmarks[eye_landmarks], 1].mean()
     edges = [vertices[loop] for loop in boundary_loops(faces)]
     edges = [edge for edge in edges if edge[:, 1].max() < eyes]  # without the edge of a mask
-    ways = [np.roll(edge, -1, axis=0) - edge for edge in edges]
-    points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, ways))
+    steps = [np.roll(edge, -1, axis=0) - edge for edge in edges]
+    points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, steps))
     # Without the upright edges of half heads.
     is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)
     points = points[is_level & (points[:, 1] < chin[1])]
@@ -38,11 +38,11 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     height = min(full_height, 0.5 * (float(chin @ up) - bottom))
     if height <= 0.0:
         return None
-    share = (vertices @ up - bottom) / height
-    ahead = vertices[:, 2] - vertices[share < 1.0, 2].max()
+    opacity = (vertices @ up - bottom) / height
+    ahead = vertices[:, 2] - vertices[opacity < 1.0, 2].max()
     brow_landmarks = slice(17, 27)
     below = vertices[landmarks[brow_landmarks], 1].max() - vertices[:, 1]
-    return np.stack([share, np.minimum(ahead, below)], axis=1).astype(np.float32)
+    return np.stack([opacity, np.minimum(ahead, below)], axis=1).astype(np.float32)
 
 
 def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers64:

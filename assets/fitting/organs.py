@@ -73,14 +73,14 @@ def _extent(points: Floats64) -> float:
 
 
 def _behind_lids(
-    centre: Floats64, radius: float, middle: Floats64, skin: Floats64
+    centre: Floats64, radius: float, opening: Floats64, skin: Floats64
 ) -> tuple[Floats64, float]:
     """Find centre and radius [mm] of the sphere that touches the lids from behind all around.
 
-    centre, radius: an estimate. middle: centre of the opening, (3,). skin: points of the lids,
+    centre, radius: an estimate. opening: centre of the opening, (3,). skin: points of the lids,
     (n, 3).
     """
-    around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
+    around = np.arctan2(skin[:, 1] - opening[1], skin[:, 0] - opening[0])
     sector_count = 12  # around an eye; in each sector the nearest skin should touch the eyeball
     sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
@@ -118,23 +118,23 @@ def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
 
 
 def lids_on_eyes(
-    known: Head, vertices: Floats64, eyes: Sequence[Eye], shares: Sequence[float]
+    known: Head, vertices: Floats64, eyes: Sequence[Eye], fractions: Sequence[float]
 ) -> Floats64:
     """Move the lids to the same distance from the eyes as on the built-in head.
 
     The corners of the eye stay, because they rest on flesh. eyes: in the order of `known.eyes`.
-    shares: for each ring of vertices around the eye, from the lids' edge outward, the fraction of
-    the whole motion. Returns vertices [mm], (V, 3).
+    fractions: for each ring of vertices around the eye, from the lids' edge outward, the fraction
+    of the whole motion. Returns vertices [mm], (V, 3).
     """
     placed = vertices.copy()
     for old, new in zip(known.eyes, eyes, strict=True):
-        for row, share in enumerate(shares):
+        for row, fraction in enumerate(fractions):
             ring = known.rings[f"eye_{row}_{old.name}"]
             ring = np.delete(ring, [0, len(ring) // 2])
             above = np.linalg.norm(known.vertices[ring] - old.centre, axis=1) / old.radius
             away = vertices[ring] - new.centre
             nearer = new.radius * above / np.linalg.norm(away, axis=1) - 1.0
-            placed[ring] += share * nearer[:, None] * away
+            placed[ring] += fraction * nearer[:, None] * away
     return placed
 
 
@@ -232,9 +232,9 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
     edges = [0.0, *(np.arcsin(eye.iris_radius / eye.radius) for eye in (old, new)), np.pi]
     placed = np.interp(angle, [0.0, edges[1], np.pi], [0.0, edges[2], np.pi])
     beside = unit_vectors(away[:, :2])
-    ways = np.column_stack([np.sin(placed)[:, None] * beside, np.cos(placed)])
+    directions = np.column_stack([np.sin(placed)[:, None] * beside, np.cos(placed)])
     bulge = new.iris_radius / old.iris_radius * (reach - old.radius)
-    vertices = new.centre + (new.radius + bulge)[:, None] * ways
+    vertices = new.centre + (new.radius + bulge)[:, None] * directions
     normals = vertex_normals(vertices, part.faces)
     return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
 
@@ -273,11 +273,11 @@ def with_eyelid_rims(
 
 def _without_corners(part: Part, closed: Sequence[Eye]) -> Part:
     """Remove the flesh of eyes whose sockets are closed by skin of the head."""
-    middle = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
+    centres = part.vertices.astype(np.float64)[part.faces].mean(axis=1)
     most_radii = 2.0  # greatest distance of flesh from its eye, in radii of the eyeball
     stays = np.ones(len(part.faces), np.bool_)
     for eye in closed:
-        stays &= np.linalg.norm(middle - eye.centre, axis=1) > most_radii * eye.radius
+        stays &= np.linalg.norm(centres - eye.centre, axis=1) > most_radii * eye.radius
     used, faces = np.unique(part.faces[stays], return_inverse=True)
     return replace(
         part,
@@ -311,11 +311,11 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     start = np.arccos(away[:, 2] / length)
     rim_depth = 3.0  # [mm] from the equator of the ball back to the end of a rim
     end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)
-    share = np.linspace(0.0, 1.0, RIM_ROWS)[:, None]
-    angle = (1.0 - share) * start + share * end
+    fraction = np.linspace(0.0, 1.0, RIM_ROWS)[:, None]
+    angle = (1.0 - fraction) * start + fraction * end
     tucked_depth = 0.2  # [mm] from the lids inward to the beginning of a rim
     sunk_depth = 0.3  # [mm] from the ball's surface inward to the end of a rim
-    reach = (1.0 - share) * (length + tucked_depth) + share * (eye.radius - sunk_depth)
+    reach = (1.0 - fraction) * (length + tucked_depth) + fraction * (eye.radius - sunk_depth)
     ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
     points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
     return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)

@@ -1,4 +1,4 @@
-"""Find the nearest points on the warped built-in skin, so that each lip finds the same lip.
+"""Find the nearest points on the warped built-in skin, for vertices of a lip on the same lip.
 
 Full lips overlap: one lip may lie in front of the other lip's edge. There the warped lips cross, so
 the nearest point may belong to the other lip.
@@ -41,8 +41,8 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
 def lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
     """Return 1 for vertices of the upper lip, -1 for those of the lower lip, else 0; (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
-    ways = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
-    upper, lower = ways
+    paths = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
+    upper, lower = paths
     lip_reach = 20.0  # [mm] along the skin from the inner edge of a lip
     between = 4.0  # [mm]; least difference between the paths to both lips
     sides = np.zeros(len(vertices), np.int32)

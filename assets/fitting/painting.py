@@ -222,8 +222,8 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
     jump at edges, which would break a furrow into pieces.
     """
     corners = own.corners
-    ways = corners[:, 1:] - corners[:, :1]
-    area = np.abs(np.linalg.det(ways))
+    edges = corners[:, 1:] - corners[:, :1]
+    area = np.abs(np.linalg.det(edges))
     values = np.column_stack([rates(corners, theirs.corners).reshape(-1, 4), np.ones(len(area))])
     values *= area[:, None]
     rows = own.face_uv.ravel()

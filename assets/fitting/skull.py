@@ -56,8 +56,8 @@ def build_skull(
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
     else:
         far = np.flatnonzero(is_far & (known[:, 1] > -40.0))  # [mm]; the cranium ends there
-        ways = known[far] - arrays["condyles"]
-        is_seen, nearest = _same_directions(ways, head.vertices - pivots["mandible"])
+        directions = known[far] - arrays["condyles"]
+        is_seen, nearest = _same_directions(directions, head.vertices - pivots["mandible"])
         kept = np.append(kept, far[is_seen])
         own = np.append(own, nearest[is_seen])
     warp = ThinPlateSpline(
@@ -89,14 +89,15 @@ def build_skull(
     return parts
 
 
-def _same_directions(ways: Floats64, seen: Floats64) -> tuple[Any, Any]:
+def _same_directions(directions: Floats64, seen: Floats64) -> tuple[Any, Any]:
     """Find the vertices that lie in given directions from the centre of the cranium.
 
-    ways: points in the directions, (n, 3). seen: vertices, (m, 3). Both are relative to the
-    condyles [mm]. Returns whether each direction has a vertex, and the nearest vertices, both (n,).
+    directions: points that give the directions, (n, 3). seen: vertices, (m, 3). Both are relative
+    to the condyles [mm]. Returns whether each direction has a vertex, and the nearest vertices,
+    both (n,).
     """
     centre = np.array([0.0, 40.0, 0.0])  # [mm] relative to the condyles
-    apart = scipy.spatial.distance.cdist(ways - centre, seen - centre, "cosine")
+    apart = scipy.spatial.distance.cdist(directions - centre, seen - centre, "cosine")
     return apart.min(axis=1) < 0.01, apart.argmin(axis=1)
 
 
@@ -108,14 +109,14 @@ def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Float
     """
     neighbour_count = 6
     away, near = scipy.spatial.cKDTree(skin).query(points, k=neighbour_count)
-    shares = 1.0 / np.maximum(away, 1.0) ** 2
+    weights = 1.0 / np.maximum(away, 1.0) ** 2
     fade_depth = 10.0  # [mm] inside the region, over which pushing begins
     most_distance = 40.0  # [mm] from bone to the skin; farther bone is not pushed
     pushed = np.clip(free / fade_depth, 0.0, 1.0) * (away[:, 0] < most_distance)
-    shares *= (pushed / shares.sum(axis=1))[:, None]
+    weights *= (pushed / weights.sum(axis=1))[:, None]
     skin_thickness = 2.0  # [mm] on bone
     out = ((points[:, None] - skin[near]) * normals[near]).sum(axis=2) + skin_thickness
-    inward = np.einsum("nk,nkc->nc", shares * np.maximum(out, 0.0), normals[near])
+    inward = np.einsum("nk,nkc->nc", weights * np.maximum(out, 0.0), normals[near])
     return np.asarray(points - inward)
 
 
@@ -128,8 +129,8 @@ def neck_sections(head: Any) -> list[Part]:
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
         if edge[:, 1].max() < chin:
-            middle = edge.mean(axis=0)
-            points = np.concatenate([middle + share * (edge - middle) for share, _ in rings])
+            centre = edge.mean(axis=0)
+            points = np.concatenate([centre + fraction * (edge - centre) for fraction, _ in rings])
             faces = grid_faces(np.arange(len(points)).reshape(len(rings), -1), closed=True)
             colours = np.repeat([colour for _, colour in rings], len(loop), axis=0)
             parts.append(_part("neck_section", points, faces, colours, "neck"))

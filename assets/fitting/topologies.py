@@ -114,12 +114,12 @@ def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
     if not topology.edges:
         return True
     first, second = numbers[[edge[:2] for edge in topology.edges]].T
-    share = np.array([edge[2] for edge in topology.edges])
+    ratio = np.array([edge[2] for edge in topology.edges])
     right, left = numbers[topology.landmarks][list(OUTER_EYE_CORNERS)]
     width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
     length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
     most_off = 3.0  # greatest factor between lengths on different faces
-    is_like = (length < most_off * share * width) & (length * most_off > share * width)
+    is_like = (length < most_off * ratio * width) & (length * most_off > ratio * width)
     count = len(mesh.vertices)
     sides = sides_of(mesh.faces)
     keys = sides.min(axis=1).astype(np.int64) * count + sides.max(axis=1)

@@ -40,14 +40,14 @@ class Similarity:
 
         If `target` is a mirror image of `source`, the similarity mirrors.
         """
-        middle = source.mean(axis=0)
-        wanted = target.mean(axis=0)
-        a = source - middle
-        b = target - wanted
+        centre = source.mean(axis=0)
+        target_centre = target.mean(axis=0)
+        a = source - centre
+        b = target - target_centre
         u, stretch, v = np.linalg.svd(b.T @ a)
         rotation = u @ v
         scale = float(stretch.sum() / (a * a).sum())
-        return cls(scale, rotation, wanted - scale * rotation @ middle)
+        return cls(scale, rotation, target_centre - scale * rotation @ centre)
 
     @property
     def is_mirrored(self) -> bool:

@@ -346,10 +346,10 @@ def _tints() -> _Tints:
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
     detail_size = 9  # [texels]; finer changes of lightness count as relief
     # Beside hair the mean counts skin alone, or skin between dark hairs would look raised.
-    around, share = (
+    around, skin_fraction = (
         scipy.ndimage.uniform_filter(each, detail_size) for each in (lightness, is_skin)
     )
-    detail = lightness - is_skin * around / np.maximum(share, 1e-3)
+    detail = lightness - is_skin * around / np.maximum(skin_fraction, 1e-3)
     return _Tints(
         np.ascontiguousarray(np.moveaxis(bare, 2, 0)),
         **soft,

@@ -91,14 +91,14 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
     darker: light from the skin relative to light skin, at most 1, (3,).
     """
     # Exponents of `darker` for the flesh at the inner corner, the wet edges of the lids, the white.
-    shares = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
+    exponents = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
     white_share = np.array([0.15, 0.19, 0.25])
     if (darker == 1.0).all():
         return tuple(parts)
     found = {}
     for part in parts:
-        if part.name in shares:
-            found[part.name] = _times(part.colours, darker ** shares[part.name])
+        if part.name in exponents:
+            found[part.name] = _times(part.colours, darker ** exponents[part.name])
     for eye in eyes:
         part = _eyeball(parts, eye)
         is_white = (_aside(part, eye) > 1.05)[:, None]

@@ -199,8 +199,8 @@ def _face(size: int) -> tuple[slice, slice, Floats64]:
     return rows, columns, place
 
 
-def _bump(values: Floats64, middle: float, wide: float) -> Floats64:
-    return np.asarray(np.exp(-(((values - middle) / wide) ** 2)))
+def _bump(values: Floats64, centre: float, wide: float) -> Floats64:
+    return np.asarray(np.exp(-(((values - centre) / wide) ** 2)))
 
 
 def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:

@@ -113,8 +113,8 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         own += 0.45 * _wander(18.0, y, random)
         low, high = random.uniform(9.0, 13.0), random.uniform(27.0, 37.0)
         ends = smooth_step(low, low + 6.0, y) * smooth_step(high, high - 9.0, y)
-        share = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
-        depth = deepest_of_all * share * ends * (1.0 + 0.12 * _wander(14.0, y, random))
+        factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
+        depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _wander(14.0, y, random))
         found.append(Line(own, depth, 2.1, 3.7, 1.3))
     return found
 
@@ -150,8 +150,8 @@ def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Fl
     """Draw a random curve of mean 0 and deviation 1, (s,); length: mean wavelength [mm]."""
     waves = length / np.array([0.6, 1.0, 1.7])
     begins = random.uniform(0.0, 2.0 * np.pi, 3)
-    shares = np.array([0.8, 0.5, 0.33])
-    return np.asarray(np.cos(2.0 * np.pi * samples[:, None] / waves + begins) @ shares * 1.41)
+    amplitudes = np.array([0.8, 0.5, 0.33])
+    return np.asarray(np.cos(2.0 * np.pi * samples[:, None] / waves + begins) @ amplitudes * 1.41)
 
 
 def _samples(reach: tuple[float, float]) -> Floats64:

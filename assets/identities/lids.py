@@ -64,24 +64,24 @@ def _yielding() -> tuple[Floats32, Floats32]:
     """
     head = load("head")
     across = head.wrinkles.across.copy()
-    share = np.zeros(len(across), np.float32)
+    has_fold = np.zeros(len(across), np.float32)
     for side in EYES:
         edge = _edge(head.vertices, side)
         along = _nearest(head.vertices, edge)
-        way = head.vertices - _shares(along) @ edge
-        away = np.linalg.norm(way, axis=1)
-        is_seen = (way[:, 1] > -0.1) & (way[:, 2] > -4.0)
+        offset = head.vertices - _shares(along) @ edge
+        away = np.linalg.norm(offset, axis=1)
+        is_seen = (offset[:, 1] > -0.1) & (offset[:, 2] > -4.0)
         is_between = (along > 0.15) & (along < 0.95)
         reach = 6.5  # [mm] from the lid's edge to the end of the overhanging skin
         is_lid = is_seen & is_between & (away < reach)
-        share[is_lid] = 1.0
+        has_fold[is_lid] = 1.0
         is_free = is_lid & (across == 0.0).all(axis=(1, 2))
-        upward = way / np.maximum(away, 1e-6)[:, None]
+        upward = offset / np.maximum(away, 1e-6)[:, None]
         upward[away < 0.5] = [0.0, 1.0, 0.0]
         across[is_free] = upward[is_free, None]
-    for each in (across, share):
+    for each in (across, has_fold):
         each.flags.writeable = False
-    return across, share
+    return across, has_fold
 
 
 def fold_of(person: Person, side: str, size: int) -> Relief:
@@ -93,9 +93,9 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     texels = near.texels
     along = near.along
     places = texels.interpolate(person.vertices[person.faces])
-    way = places - near.shares @ _edge(person.vertices, side)
-    away = np.sqrt((way**2).sum(axis=1))
-    upward = way[:, 1] / np.maximum(away, 0.1)
+    offset = places - near.shares @ _edge(person.vertices, side)
+    away = np.sqrt((offset**2).sum(axis=1))
+    upward = offset[:, 1] / np.maximum(away, 0.1)
     is_lid = smooth_step(0.15, 0.6, upward) * smooth_step(0.03, 0.15, along)
     arch = 0.35 + 0.65 * np.sin(np.pi * np.clip(0.1 + 0.75 * along, 0.0, 1.0))
     identity = person.identity
@@ -158,10 +158,10 @@ def _nearest(places: Floats64, points: Floats64) -> Floats64:
     steps = np.linspace(0.0, 1.0, STEPS)
     along = steps[scipy.spatial.cKDTree(_shares(steps) @ points).query(places)[1]]
     for _ in range(2):  # by Newton's method
-        way, first, second = (_shares(along, n) @ points for n in range(3))
-        way = places - way
-        slope = (way * first).sum(axis=1)
-        bend = (way * second).sum(axis=1) - (first**2).sum(axis=1)
+        offset, first, second = (_shares(along, n) @ points for n in range(3))
+        offset = places - offset
+        slope = (offset * first).sum(axis=1)
+        bend = (offset * second).sum(axis=1) - (first**2).sum(axis=1)
         along = np.clip(along - slope / np.minimum(bend, -1.0), 0.0, 1.0)
     return np.asarray(along, np.float64)
 
@@ -179,8 +179,8 @@ def _about(side: str, size: int) -> _About:
     places = texels.interpolate(head.vertices[head.faces])
     along = _nearest(places, points)
     shares = _shares(along)
-    way = places - shares @ points
-    kept = (np.linalg.norm(way, axis=1) < reach) & (way[:, 1] > -0.2)
+    offset = places - shares @ points
+    kept = (np.linalg.norm(offset, axis=1) < reach) & (offset[:, 1] > -0.2)
     texels = Texels(
         texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
     )

@@ -31,18 +31,18 @@ SHAPE = (57, 49)  # rows from the nose to the chin, columns from right to left
 
 def mask(person: Person, colour: Colour) -> Part:
     """Make a mask that fits a person; colour: sRGB."""
-    middle = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
-    middle[2] += 30.0
+    axis = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
+    axis[2] += 30.0
     turn, height = _places(person)
     outward = np.stack([np.sin(turn), np.zeros(SHAPE), np.cos(turn)], axis=-1)
     level = np.stack([np.zeros(SHAPE), height, np.zeros(SHAPE)], axis=-1)
-    reach = _membrane(_skin_below(person, middle, turn, height))
+    reach = _membrane(_skin_below(person, axis, turn, height))
     down = np.linspace(0.0, 1.0, SHAPE[0])[:, None]
     aside = np.abs(np.linspace(-1.0, 1.0, SHAPE[1]))
     pleats, creases = _pleats(down, aside)
-    outer = middle + level + (reach + pleats)[..., None] * outward
+    outer = axis + level + (reach + pleats)[..., None] * outward
     thickness = 0.7  # [mm]
-    inner = middle + level + (reach - thickness)[..., None] * outward
+    inner = axis + level + (reach - thickness)[..., None] * outward
     is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
     shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(SHAPE)])
     shares = _mandible_shares(person, outer)
@@ -113,20 +113,20 @@ def _places(person: Person) -> tuple[Floats64, Floats64]:
     return np.broadcast_to(widest * across, SHAPE), height
 
 
-def _skin_below(person: Person, middle: Floats64, turn: Floats64, height: Floats64) -> Floats64:
+def _skin_below(person: Person, axis: Floats64, turn: Floats64, height: Floats64) -> Floats64:
     """Measure how far the skin under each vertex of the sheet lies from the axis [mm], SHAPE.
 
-    middle: a point of the axis. turn, height: as `_places` returns them.
+    axis: a point of the axis. turn, height: as `_places` returns them.
     """
     skin = person.vertices
     corners = skin[person.faces]
-    corners = corners[corners[:, :, 2].min(axis=1) > middle[2] - 40.0]
+    corners = corners[corners[:, :, 2].min(axis=1) > axis[2] - 40.0]
     steps = 8
     first, second = np.meshgrid(np.arange(steps + 1), np.arange(steps + 1))
     is_within = first + second <= steps
     weights = np.stack([first[is_within], second[is_within]], axis=-1) / steps
     weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
-    points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - middle
+    points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - axis
     radius = 65.0  # [mm]; converts angles into lengths
     there = np.column_stack([radius * np.arctan2(points[:, 0], points[:, 2]), points[:, 1]])
     reach = np.hypot(points[:, 0], points[:, 2])

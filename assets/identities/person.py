@@ -71,11 +71,11 @@ def make_person(identity: Identity) -> Person:
     If triangles of the skin would turn over or intersect, the weights are scaled down. The person's
     `identity` has the scaled weights.
     """
-    shares = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # factors on the weights, tried in this order
-    for share in shares[:-1]:
+    factors = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # factors on the weights, tried in this order
+    for factor in factors[:-1]:
         with contextlib.suppress(AssetError):
-            return _made(identity if share == 1.0 else identity.scaled(share))
-    return _made(identity.scaled(shares[-1]))
+            return _made(identity if factor == 1.0 else identity.scaled(factor))
+    return _made(identity.scaled(factors[-1]))
 
 
 def _made(identity: Identity) -> Person:
@@ -168,13 +168,13 @@ def _resting_face(
         for lid, height in (("superius", upper), ("inferius", lower_lid_height)):
             middle = vertices[known.anatomy[f"palpebrale_{lid}_{eye.name}"]]
             moved = eye.centre[1] + height * eye.iris_radius - middle[1]
-            for row, share in enumerate(row_shares):
+            for row, weight in enumerate(row_shares):
                 ring = known.rings[f"eye_{row}_{eye.name}"]
                 inner, outer = vertices[ring[[0, len(ring) // 2]]]
                 along = (vertices[ring, 0] - inner[0]) / (outer[0] - inner[0])
                 is_above = vertices[ring, 1] > inner[1] + along * (outer[1] - inner[1])
                 open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
-                x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
+                x[ring, 1] += weight * moved * open_ * (is_above == (lid == "superius"))
     # Brows move tangentially to the forehead; touching lips move together.
     normals = vertex_normals(vertices, known.faces)
     up = np.array([0.0, 1.0, 0.0])
@@ -183,12 +183,12 @@ def _resting_face(
     turned = np.clip(identity.corners - line[:2].mean() + line[2:].mean(), -most_turn, most_turn)
     corner_radius = 9.0  # [mm] within which skin follows the corners of the mouth
     brow_radius = 11.0  # [mm] within which skin follows the brows
-    for points, way, wide in (
+    for points, displacement, wide in (
         (known.landmarks[48:55:6], turned * up, corner_radius),
         (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), brow_radius),
     ):
         away = scipy.spatial.cKDTree(vertices[points]).query(vertices)[0]
-        x += np.exp(-((away / wide) ** 2))[:, None] * way
+        x += np.exp(-((away / wide) ** 2))[:, None] * displacement
     return x
 
 
@@ -213,10 +213,10 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
     random = np.random.default_rng(phases)
     wave_count = 5
     length = 60.0  # [mm]; mean wavelength
-    ways = random.normal(0.0, 2.0 * np.pi / length, (3, wave_count)) / np.sqrt(3.0)
+    wave_vectors = random.normal(0.0, 2.0 * np.pi / length, (3, wave_count)) / np.sqrt(3.0)
     begins = random.uniform(0.0, 2.0 * np.pi, wave_count)
     halves = np.abs(known.vertices * [1.0, 0.0, 0.0]) + known.vertices * [0.0, 1.0, 1.0]
-    waves = np.cos(halves @ ways + begins).sum(axis=1) / np.sqrt(0.5 * wave_count)
+    waves = np.cos(halves @ wave_vectors + begins).sum(axis=1) / np.sqrt(0.5 * wave_count)
     return np.asarray(np.clip(1.0 + 0.55 * waves, 0.15, 1.9))
 
 

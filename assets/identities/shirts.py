@@ -100,8 +100,8 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
     wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMNS)[:, None]
     rows = []
-    for share, outside in profile:
-        there = inner + share * (root - inner)
+    for fraction, outside in profile:
+        there = inner + fraction * (root - inner)
         rows.append(there + (outside + wave * (outside > 3.0)) * out)
     shades = np.array([0.3, 0.4, 0.6, 0.9, 1.0, 1.0, 0.99, 0.98, 0.97, 0.93, 0.75, 0.45])
     ribs = shades[:, None] * _ribs(len(columns))
@@ -154,13 +154,13 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
     light = 0.35 * colour + 0.6
     turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     for depth in (8.0, 76.0, 152.0):
-        middle = surface.down(np.zeros((1, 1)), np.full((1, 1), depth))[0, 0]
+        centre = surface.down(np.zeros((1, 1)), np.full((1, 1), depth))[0, 0]
         below = surface.down(np.zeros((1, 1)), np.full((1, 1), depth + 6.0))[0, 0]
-        slope = (middle - below) / np.linalg.norm(middle - below)
+        slope = (centre - below) / np.linalg.norm(centre - below)
         out = np.cross([1.0, 0.0, 0.0], slope)
         around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
         profile = ((5.3, 1.2), (5.3, 3.2), (4.6, 3.6), (3.4, 3.2), (0.05, 3.1))
-        rows = [middle + radius * around + height * out for radius, height in profile]
+        rows = [centre + radius * around + height * out for radius, height in profile]
         # Triangles run counter-clockwise, seen from outside.
         rims = np.stack(rows)[::-1, :]
         shades = np.array([0.9, 0.9, 1.05, 0.95, 0.8])
@@ -243,15 +243,15 @@ class _Surface:
     def _read(self, values: Floats64, columns: Floats64, depths: Floats64) -> Floats64:
         columns, depths = np.broadcast_arrays(columns, depths)
         before = np.minimum(columns.astype(int), COLUMNS - 1)
-        share = columns - before
-        lengths = self._depths[:, before] + share * np.diff(self._depths, axis=1)[:, before]
+        fraction = columns - before
+        lengths = self._depths[:, before] + fraction * np.diff(self._depths, axis=1)[:, before]
         row = np.clip((lengths <= depths).sum(axis=0) - 1, 0, len(lengths) - 2)
         upper = np.take_along_axis(lengths, row[None], axis=0)[0]
         lower = np.take_along_axis(lengths, row[None] + 1, axis=0)[0]
         part = np.clip((depths - upper) / (lower - upper), 0.0, 1.0)[..., None]
-        share = share[..., None]
-        above = values[row, before] + share * (values[row, before + 1] - values[row, before])
-        below = values[row + 1, before] * (1.0 - share) + share * values[row + 1, before + 1]
+        fraction = fraction[..., None]
+        above = values[row, before] + fraction * (values[row, before + 1] - values[row, before])
+        below = values[row + 1, before] * (1.0 - fraction) + fraction * values[row + 1, before + 1]
         return np.asarray(above + part * (below - above))
 
 

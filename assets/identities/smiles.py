@@ -38,9 +38,9 @@ CANINE_SHARE = 0.33
 
 def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
     """Draw a random smile for a sex."""
-    kind, share, *others = random.uniform(0.0, 1.0, 5)
-    share *= 1.0 if is_woman else 0.8
-    lift = 0.5 + 0.5 * share if kind < CANINE_SHARE else 0.25 * share
+    kind, strength, *others = random.uniform(0.0, 1.0, 5)
+    strength *= 1.0 if is_woman else 0.8
+    lift = 0.5 + 0.5 * strength if kind < CANINE_SHARE else 0.25 * strength
     curl, spread, drop = (float(2.0 * each - 1.0) for each in others)
     return Smile(float(lift), curl, spread, drop)
 

@@ -107,7 +107,7 @@ class Identity:
     lines: Lines | None = None
 
     def scaled(self, share: float) -> Identity:
-        """Scale the shape's differences from the mean of people by a factor; 0 gives the mean."""
+        """Scale the shape's differences from the mean of people by `share`; 0 gives the mean."""
         kinds = (self.weights, self.unevenness)
         weights, unevenness = (tuple(share * weight for weight in kind) for kind in kinds)
         return replace(self, weights=weights, unevenness=unevenness, brows=share * self.brows)
@@ -216,10 +216,10 @@ def person_space() -> PersonSpace:
     slopes = np.array([[more[code] - less[code] for more, less in sides] for code in NORMS])
     named = [point for point, *_ in POINTS]
     numbers = [head.landmarks[p] if isinstance(p, int) else head.anatomy[p] for p in named]
-    ways = np.array([way for _, way, *_ in POINTS], dtype=np.float64)
-    ways = unit_vectors(ways)
+    directions = np.array([direction for _, direction, *_ in POINTS], dtype=np.float64)
+    directions = unit_vectors(directions)
     corner = modes[:, head.anatomy["exocanthion_left"]] * [0.0, 1.0, 1.0]
-    pushed = np.einsum("kni,ni->nk", modes[:, numbers] - corner[:, None], ways)
+    pushed = np.einsum("kni,ni->nk", modes[:, numbers] - corner[:, None], directions)
     return PersonSpace(mean, modes, slopes, pushed, head.anatomy)
 
 
@@ -277,6 +277,6 @@ def sample_identity(
     )
 
 
-def _normalised(shares: Mapping[str, float]) -> Floats64:
-    weights = np.array(list(shares.values()))
+def _normalised(frequencies: Mapping[str, float]) -> Floats64:
+    weights = np.array(list(frequencies.values()))
     return np.asarray(weights / weights.sum())

@@ -58,8 +58,8 @@ def _raised(size: int, side: float) -> tuple[Relief, Relief]:
     x, y, z = texels.interpolate(head.vertices[head.faces]).T
     axis_depth = -8.0  # [mm]; z of the neck's axis
     angle = np.arctan2(z - axis_depth, side * x)
-    middle = np.radians(np.interp(y, *COURSE.T))
-    off = np.hypot(x, z - axis_depth) * (angle - middle)  # [mm] in front of the centre line
+    centre_line = np.radians(np.interp(y, *COURSE.T))
+    off = np.hypot(x, z - axis_depth) * (angle - centre_line)  # [mm] in front of the centre line
     belly_width = 8.5  # [mm]
     belly = np.exp(-((off / belly_width) ** 2))
     # The tendon lies at the front edge of the belly, near the breastbone.

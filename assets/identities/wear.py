@@ -86,16 +86,16 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
     farthest = 9.0 if nose is None else 20.0  # [mm] that the glasses may move forward
     nose = skin if nose is None else nose
     eyes = {eye.name: eye for eye in person.eyes}
-    middle = 0.5 * (eyes["left"].centre + eyes["right"].centre)
+    centre = 0.5 * (eyes["left"].centre + eyes["right"].centre)
     apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
-    lens = np.array([1.1 * apart, middle[1] - 3.0])
+    lens = np.array([1.1 * apart, centre[1] - 3.0])
     # The left lens is computed; the right lens is its mirror image.
-    cornea = middle[2] + eyes["left"].radius
+    cornea = centre[2] + eyes["left"].radius
     around = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
-    ways = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    directions = np.stack([np.cos(around), np.sin(around)], axis=-1)
     power = frame.squareness
-    reach = (np.abs(ways / [frame.half_width, frame.half_height]) ** power).sum(axis=1)
-    rim = lens + ways / reach[:, None] ** (1.0 / power)
+    reach = (np.abs(directions / [frame.half_width, frame.half_height]) ** power).sum(axis=1)
+    rim = lens + directions / reach[:, None] ** (1.0 / power)
     inner = lens[0] - frame.half_width
     across = np.linspace(-inner, inner, 13)
     bow = 1.0 - (across / inner) ** 2

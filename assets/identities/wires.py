@@ -22,8 +22,8 @@ def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -
     (3,). radius: radius of the wire [mm].
     """
     side = np.sign(start[0])
-    share = np.linspace(0.0, 1.0, 24)[:, None]
-    straight = start + share * (end - start)
+    fraction = np.linspace(0.0, 1.0, 24)[:, None]
+    straight = start + fraction * (end - start)
     head = skin[skin[:, 2] > end[2] + 10.0]  # without the ear
     tree = scipy.spatial.cKDTree(head[:, 1:])
     near = tree.query_ball_point(straight[:, 1:], 6.0)

@@ -139,7 +139,7 @@ def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
     renderer.draw(frame)
     stream.upload(len(stream.vertices), len(stream.triangles))
     for use in (renderer.draw, renderer.read):
-        with pytest.raises(ValueError, match="filled anew since the frame was made"):
+        with pytest.raises(ValueError, match="filled again since the frame was made"):
             use(frame)
 
 
