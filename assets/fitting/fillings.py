@@ -115,12 +115,12 @@ def _filling(
 def _sheet(
     vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
 ) -> Integers:
-    """The triangles of a sheet between the lids that covers an eye; see `_filling`."""
+    """Find the triangles of a sheet between the lids that covers an eye; see `_filling`."""
     none = np.zeros(0, np.int64)
     edge = np.concatenate([upper[:-1], lower[:-1]])
     centre = around.mean(axis=0)
     width = np.linalg.norm(upper[-1] - upper[0])
-    least_height = 0.1  # of the width; lids that are nearly shut are no opening
+    least_height = 0.1  # relative to the width; lids that are nearly shut have no opening
     if (upper - lower[::-1])[:, 1].max() < least_height * width:
         return none
     corners = vertices[faces]
@@ -131,7 +131,7 @@ def _sheet(
     turned = 1.0 if normals[covering(corners, centre), 2].mean() > 0.0 else -1.0
     is_near = (turned * normals[:, 2] > 0.0) & (middles[:, 2] > centre[2] - COVER_DEPTH)
     near = np.flatnonzero(is_near & (np.linalg.norm(middles - centre, axis=1) < 0.6 * width))
-    for share in (1.0, 0.9, 0.8):  # of the curve's size, because margins of lids are rounded
+    for share in (1.0, 0.9, 0.8):  # smaller curves too, because margins of lids are rounded
         shrunk = centre + share * (edge - centre)
         inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
         found = _without_teeth(faces, inside)
@@ -143,7 +143,7 @@ def _sheet(
 
 
 def _without_teeth(faces: Integers32, found: Integers) -> Integers:
-    """The largest connected part of a sheet, less triangles that hang on it by one side."""
+    """Return the largest connected part of a sheet, without triangles attached by one side."""
     most_passes = 5
     for _ in range(most_passes):
         sides = np.sort(sides_of(faces[found]), axis=1)
@@ -159,7 +159,7 @@ def _without_teeth(faces: Integers32, found: Integers) -> Integers:
 
 
 def _is_disc(faces: Integers32) -> bool:
-    """Whether triangles form one sheet with one border, which meets no vertex twice."""
+    """Whether triangles form a disc: one sheet with one border that passes no vertex twice."""
     if not len(faces):
         return False
     sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)

@@ -49,9 +49,9 @@ PLAIN = Features()
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
     """Draw random features for an identity's sex and age and for a skin tone (ITA [deg]).
 
-    Women's eyes and lips are darker than their skin by a greater contrast than men's (Russell 2009,
-    "A sex difference in facial contrast and its exaggeration by cosmetics", Perception
-    38:1211-1219). The contrast falls with age (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985).
+    In women, eyes and lips contrast more with the skin than in men (Russell 2009, "A sex difference
+    in facial contrast and its exaggeration by cosmetics", Perception 38:1211-1219). The contrast
+    falls with age (Porcheron, Mauger, Russell 2013, PLoS ONE 8:e57985).
     On dark skin lips vary most: some are as dark as the skin, others far lighter and pinker
     (Vergnaud and others 2024, "Lip color diversity", Skin Res. Technol. 30:e13583). On light skin
     `pale_lips` changes nothing. All numbers are chosen by eye.

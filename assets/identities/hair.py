@@ -104,7 +104,7 @@ class Hairline:
         up = np.linspace(1.0, 0.0, size)
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
-        # No hairline is a drawn line: it has notches and tongues, other ones on each person.
+        # Real hairlines are uneven, so each person's has other notches and tongues.
         turn = self.front + self.temples
         row += 1.3 * np.sin(107.0 * across + turn) + 1.1 * np.sin(241.0 * across + 3.0 * turn)
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
@@ -172,7 +172,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
     comb = unit_vectors(np.cross(np.cross(whorl, out), normals))
-    if whorl[2] < 0.0:  # at a crown
+    if whorl[2] < 0.0:  # a whorl at the crown
         turned, comb = _swirled(whorl, out, away, comb)
         angle = angle - turned
     long = length * _lengths(cut, points, normals, behind)
@@ -195,7 +195,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (FINE if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    # Cropped hair shines little: its tips point outward, so no ring of light is around the whorl.
+    # Cropped hair shines little: its tips point outward, so no ring of highlights surrounds the
+    # whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     light = _tones(points, radius * away)
     hair = Part(
@@ -208,7 +209,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
         shine=SLEEK if cut.knot else short_shine,
         striation=striation.astype(np.float32),
     )
-    # At the front hairs are shorter, and those that are combed over the forehead longer.
+    # Locks at the front are at least this long; longer cuts are combed over the forehead.
     growth = TIED if cut.knot else replace(SHORT, least=min(2.0 + 0.15 * length * cut.top, 5.5))
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
     upward_share = 0.8
@@ -218,27 +219,27 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
 
 
 def _tones(points: Points, away: Floats64) -> Floats64:
-    """Factors of the colour of strands, (n, 1); away: distances from the whorl [mm], (n,)."""
-    difference = 0.07  # by which locks are lighter and darker
-    root_radius = 7.0  # [mm] around a whorl, where roots are seen
+    """Return factors on the colour of strands, (n, 1); away: distance from the whorl [mm], (n,)."""
+    difference = 0.07  # between the tones of locks and the mean tone
+    root_radius = 7.0  # [mm] around a whorl, within which dark roots show
     at_roots = 1.0 - 0.16 * np.exp(-((away / root_radius) ** 2))[:, None]
     return np.asarray(at_roots * (1.0 + difference * waves(points, 0.33, 1.0)))
 
 
 def _uneven(across: Floats64) -> Floats64:
-    """How far hems lie before their mean [mm], at places across strands [mm], (n,)."""
+    """Return how far uneven hems lie in front of their mean [mm]; across: strands [mm], (n,)."""
     fine = 1.0 * np.sin(0.22 * across) + 0.8 * np.sin(0.57 * across + 1.0)
     return np.asarray(fine + 1.5 * np.sin(0.085 * across + 2.0))
 
 
 def _first_side(cut: Cut, whorl: Floats64) -> Floats64:
-    """The direction from a whorl at which angles around it are 0, shape (3,).
+    """Return the direction from a whorl at which angles around it are 0, (3,).
 
-    On the line opposite strands begin anew. It runs down the face to a knot behind the head, else
-    down a side.
+    On the opposite side of the whorl the angle jumps, which shows as a line in the strands. For a
+    knot behind the head this line runs up from the face, else down one side of the head.
     """
     beside = np.cross([0.0, 0.3, 1.0], whorl)
-    highest = 0.8  # whorls below belong to knots on top of the head
+    highest = 0.8  # knots on top of the head have whorls that point down more than this
     if cut.knot and whorl[1] > -highest:
         beside = np.array([0.0, 1.0, 0.0]) - whorl[1] * whorl
     return np.asarray(unit_vectors(beside[None])[0])
@@ -247,19 +248,20 @@ def _first_side(cut: Cut, whorl: Floats64) -> Floats64:
 def _swirled(
     whorl: Floats64, out: Points, away: Floats64, comb: Points
 ) -> tuple[Floats64, Floats64]:
-    """How far strands have turned around a whorl [radians], (n,), and their directions, (n, 3).
+    """Turn strands around a whorl; returns angles [rad], (n,), and turned directions, (n, 3).
 
-    out: unit, from the middle of the head. away: their angles from the whorl.
+    out: unit vectors from the head's centre, (n, 3). away: angles of strands from the whorl [rad],
+    (n,). comb: directions of strands without the whorl, (n, 3).
     """
-    swirl = 1.6
-    swirl_angle = 0.3  # from the whorl, up to which they turn
+    swirl = 1.6  # [rad] of rotation at the whorl
+    swirl_angle = 0.3  # [rad] from the whorl, over which the rotation decays
     turned = swirl * np.exp(-away / swirl_angle)
     around = np.cross(whorl, out) * (turned / swirl_angle)[:, None]
     return turned, unit_vectors(comb - around)
 
 
 def _lengths(cut: Cut, points: Points, normals: Points, behind: Floats64) -> Floats64:
-    """Lengths of strands [mm], (n,); cut by hand, some stand higher than others."""
+    """Return lengths of strands [mm], (n,); they are uneven, as if cut by hand."""
     uneven_share = 0.0 if cut.knot else 0.06
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long *= smooth_step(0.0, cut.behind, behind) * (1.0 + uneven_share * waves(points, 0.21)[:, 0])

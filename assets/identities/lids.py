@@ -51,7 +51,7 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
 
 
 def with_lids(wrinkles: Wrinkles) -> Wrinkles:
-    """Wrinkles whose upper lids yield to stretch: those of the built-in head, or of a person."""
+    """Let the upper lids of a head's wrinkles yield to stretch."""
     across, lids = _yielding()
     return replace(wrinkles, across=across, lids=lids)
 

@@ -1,7 +1,8 @@
-"""Locks: thin ribbons of a few hairs each, over the layers of hair.
+"""Make locks: thin ribbons of a few hairs each, which grow on the layers of hair.
 
-Layers (render/shaders/shells.glsl) are smooth seen from the side. Ends of locks break this outline,
-and single hairs stand before the hairline.
+Seen from the side, layers (render/shaders/shells.glsl) have a smooth outline. Ends of locks break
+this outline, and single hairs grow in front of the hairline.
+
 Source: Ward, Bertails, Kim, Marschner, Cani, Lin 2007, "A survey on hair modeling", section 2.
 """
 
@@ -17,24 +18,25 @@ from ...geometry.directions import unit_vectors
 from ..model import Part
 from ..smooth import Points
 
-MEAN = 0.6  # share of the way of layers at which their vertices lie
-STATIONS = 3  # places along a lock: its root, one between, and its tip
-CORNERS = 2 * STATIONS - 1
-FINEST = 0.05  # [mm] half the thickness of a single hair, as it is drawn
+MEAN = 0.6  # fraction of a strand's length at which vertices of layers lie
+STATIONS = 3  # points along a lock: root, middle and tip
+CORNERS = 2 * STATIONS - 1  # vertices of a lock
+FINEST = 0.05  # [mm]; radius with which a single hair is drawn
 
 
 @dataclass(frozen=True)
 class Growth:
     """How locks grow on the layers of hair; chosen by eye.
 
-    count: their number, at the same distances all over dense hair.
-    root, tip: where they begin, and where they end on average, as shares of the layers' way.
-    least, longest: bounds of their lengths [mm].
-    spread: of their directions, as a share of their lengths.
-    half: half the width of the widest at its root [mm].
-    lying: how flat they lie on the layers, 0 to 1.
-    radius: of the head that they bend around [mm].
-    fringe: how much closer they stand at hems, relative to elsewhere.
+    count: number of locks, which are evenly spaced in dense hair.
+    root: where locks begin, as a fraction of the longest strands of the layers.
+    tip: where locks end on average, as a fraction of the longest strands.
+    least, longest: length of strands that locks assume at least, and greatest length of locks [mm].
+    spread: sideways deviation of tips, as a fraction of the length.
+    half: half the width of the widest lock at its root [mm].
+    lying: how flat locks lie on the layers, 0 to 1.
+    radius: radius of the head around which locks bend [mm].
+    fringe: how much denser locks are at hems: 0 as elsewhere, 1 twice as dense.
     """
 
     count: int
@@ -73,11 +75,11 @@ FALLING = Growth(
     radius=75.0,
     fringe=-0.8,
 )
-WOUND = replace(FALLING, count=350, longest=22.0, radius=30.0)  # on a knot; a tail is straight
+WOUND = replace(FALLING, count=350, longest=22.0, radius=30.0)  # on a knot, which is rounder
 
 
 def locks_on(hair: Part, growth: Growth) -> Part:
-    """Locks on layers of hair; they are wide in the midst of it, and single hairs at its hem."""
+    """Make the locks on layers of hair; they are wide in dense hair, and single hairs at hems."""
     assert hair.striation is not None
     chances = _chances(growth.count)
     faces, shares = _places(hair, growth.fringe, chances[:, :3])
@@ -89,21 +91,21 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     long = np.linalg.norm(way, axis=1, keepdims=True)
     ahead = way / np.maximum(long, 1e-6)
     across = unit_vectors(np.cross(normal, ahead) + 1e-6)
-    # Locks beside each other lean alike, and each a little for itself.
+    # Neighbouring locks lean alike; each also has a small random lean.
     alone = chances[:, 3:6] - np.float32(0.5)
     lean = growth.spread * (waves(root, 0.45) + 1.2 * alone[:, :1])
     ahead -= growth.lying * (ahead * normal).sum(axis=1, keepdims=True) * normal
-    # Of lying hair only a few stand off.
+    # On lying hair only few locks stand off.
     risen = alone[:, 1:2] * (1.0 - growth.lying * (1.0 - 6.0 * alone[:, 1:2] ** 4))
     rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 0.6, 2.0) + risen)
-    # Around a whorl, where layers stand up, they lie to all sides.
+    # Around a whorl, where layers stand up, locks lie in all directions.
     upright = np.clip((ahead * normal).sum(axis=1, keepdims=True) - 0.6, 0.0, 0.4)
     stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
     ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
     reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
     length = np.minimum(reach * np.maximum(long, growth.least), growth.longest)
     t = np.linspace(0.0, 1.0, STATIONS, dtype=np.float32)[:, None]
-    # They follow the round head, and their tips hang.
+    # Locks bend around the head, so their tips hang.
     bend = length**2 / (2.0 * growth.radius) * normal
     start = root + (growth.root - MEAN) * way
     middles = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
@@ -117,7 +119,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     sides = np.cross(normal[:, None], along) * half
 
     def rows(first: Floats32 | Floats64, second: Floats32 | Floats64 | None = None) -> Floats32:
-        """Values of both sides of stations, as rows of corners; a tip has one corner."""
+        """Return values of both sides of stations as rows of vertices; a tip has one vertex."""
         both = np.stack([first, first if second is None else second], axis=2)
         whole = both.reshape(len(both), 2 * STATIONS, -1)[:, :CORNERS]
         return np.ascontiguousarray(whole.reshape(len(both) * CORNERS, -1), np.float32)
@@ -137,14 +139,14 @@ def locks_on(hair: Part, growth: Growth) -> Part:
 
 @lru_cache(maxsize=4)
 def _chances(count: int) -> Floats32:
-    """Random numbers of locks, 0 to 1, shape (count, 11); the first are evenly spread."""
+    """Draw random numbers of locks, 0 to 1, (count, 11); those in the first column rise."""
     found = np.random.default_rng(0).random((count, 11), np.float32)
     found[:, 0] = (np.arange(count) + found[:, 0]) / count
     return found
 
 
 def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, Floats32]:
-    """Faces of hair on which locks grow, (n,), and the shares of their corners, (n, 3)."""
+    """Choose the faces of hair on which n locks grow, (n,), and barycentric weights, (n, 3)."""
     assert hair.striation is not None
     a, b, c = np.moveaxis(hair.vertices[hair.faces], 1, 0)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -152,7 +154,8 @@ def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, F
     way = hair.striation[:, 2:5]
     lengths = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
     upright = np.clip((way * hair.normals).sum(axis=1) / lengths - 0.6, 0.0, 0.4)[hair.faces[:, 0]]
-    # At the hem single hairs stand closer, and fewer before it. At a whorl layers show no strands.
+    # Locks are denser at the hem, and sparse in front of it. They are densest at a whorl, where
+    # layers show no strands.
     weights = area * np.clip(0.2 + 5.0 * dense, 0.0, 1.0) * (1.0 + fringe * (dense < 0.7))
     weights *= 1.0 + 8.0 * upright
     ends = np.cumsum(weights)
@@ -163,7 +166,7 @@ def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, F
 
 
 def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
-    """A smooth field in space, about -1 to 1, (n, 1); pace: its change per mm."""
+    """Evaluate a smooth field at points, about -1 to 1, (n, 1); pace: wave number [rad/mm]."""
     x, y, z = np.moveaxis(pace * places + np.float32(turn), 1, 0)
     field = np.sin(x + 1.3 * np.sin(0.7 * z)) + np.sin(1.1 * y + z) + np.sin(0.9 * z - 0.8 * x)
     return np.asarray(0.5 * field[:, None], np.float32)
@@ -171,7 +174,7 @@ def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
 
 @lru_cache(maxsize=4)
 def _ribbons(count: int) -> Integers32:
-    """Faces of locks, counter-clockwise from outside, (count * 3, 3)."""
+    """Return the faces of locks, counter-clockwise from outside, (count * 3, 3)."""
     one = []
     for k in range(0, CORNERS - 3, 2):
         one += [(k, k + 1, k + 2), (k + 2, k + 1, k + 3)]

@@ -209,12 +209,13 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
 
 
 def _falling(far: Floats64, out: Floats64, aside: float, first: float, last: float) -> Floats64:
-    """Directions along a tail, (n, 3): outward, and between two distances more and more down.
+    """Return directions along a tail, (n, 3), which bend from outward to downward.
 
-    far: distances along it [mm], (n, 1). out: unit, outward. aside: see `Cut`.
+    far: distances along the tail [mm], (n, 1). out: outward unit vector, (3,). aside: see `Cut`.
+    first, last: distances between which the tail bends [mm].
     """
     bent = smooth_step(first, last, far)
-    straight_distances = 95.0, 190.0  # [mm] between which it ceases to fall to the side
+    straight_distances = 95.0, 190.0  # [mm] between which the sideways fall ends
     sideways = aside * (1.0 - smooth_step(*straight_distances, far))
     return unit_vectors((1.0 - bent) * out + bent * (DOWN - sideways * RIGHT))
 

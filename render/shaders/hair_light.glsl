@@ -1,22 +1,22 @@
-// Light on strands, after Kajiya, Kay 1989, "Rendering fur with three dimensional textures", with two
-// highlights, one of the hair's colour, as in Scheuermann 2004, "Practical real-time hair rendering
-// and shading".
+// Light on strands after Kajiya, Kay 1989, "Rendering fur with three dimensional textures". There are
+// two highlights, one of them in the hair's colour, as in Scheuermann 2004, "Practical real-time hair
+// rendering and shading".
 
 #include "lighting.glsl"
 
 const float TILT = 0.10;  // shifts of both highlights
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;  // exponents of the white and the coloured highlight
 
-const float SHEEN_OF_DARK = 0.02;  // black hair, too, gleams where it lies
+const float SHEEN_OF_DARK = 0.02;  // part of the coloured highlight that black hair also has
 
 struct HairLight {
-    vec3 diffuse;  // times the colour
-    vec3 shine;    // times that of `highlights`
-    float cosine;  // of the angle between strand and half vector (between the directions to eye and light)
+    vec3 diffuse;  // diffuse light; multiply by the hair's colour
+    vec3 shine;    // light of highlights; multiply by the result of `highlights`
+    float cosine;  // between strand and half vector (between the directions to eye and light)
 };
 
-// along: how strands lie on the skin below, of any length. lying: 0 for those that stand up: they show
-// their tips alone, which do not shine. position: in view space.
+// along: direction of strands, tangent to the skin, of any length. lying: 0 for strands that stand up,
+// which show only their tips and do not shine, to 1. position: in view space.
 HairLight hair_light(vec3 normal, vec3 along, float lying, vec3 position, float gloss) {
     HairLight light;
     // Hair scatters light, so it is also lit a little beyond the terminator.
@@ -30,8 +30,8 @@ HairLight hair_light(vec3 normal, vec3 along, float lying, vec3 position, float 
     return light;
 }
 
-// One highlight is shifted toward the root, the other toward the tip. shift: that of this strand.
-// front: its colour.
+// The colour of both highlights; one is shifted toward the root, the other toward the tip. shift: random
+// shift of the strand. front: colour of the strand.
 vec3 highlights(float cosine, float shift, vec3 front) {
     float first = cosine + shift - TILT, second = first + 2.0 * TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);

@@ -1,5 +1,5 @@
-// Locks of hair: ribbons that turn to the eye, over the layers of shells.glsl. All light is computed at
-// corners: they are thin. Coverage falls off over a pixel (Gupta, Sproull 1981, "Filtering edges for
+// Locks of hair: ribbons that face the camera, over the layers of shells.glsl. Locks are thin, so light
+// is computed per vertex. Coverage falls off over a pixel (Gupta, Sproull 1981, "Filtering edges for
 // gray-scale displays").
 
 #include "hair_light.glsl"
@@ -9,19 +9,19 @@
 #if defined(VERTEX_STAGE)
 
 in vec3 in_position;
-in vec3 in_normal;    // of the skin below
+in vec3 in_normal;    // normal of the skin below
 in vec3 in_colour;
-in vec3 in_along;     // unit, from the root to the tip
-in float in_half;     // half its width [mm], with the side of the corner as its sign
+in vec3 in_along;     // unit vector from the root to the tip
+in float in_half;     // half the lock's width [mm]; the sign is the side of the vertex
 in float in_opacity;
 uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
-uniform float pixel_size;  // at distance 1
+uniform float pixel_size;  // size of a pixel at distance 1
 out Surface { VARYINGS } surface;
 
-const float UNEVEN = 0.5;   // of highlights, by locks
-const float BEHIND = -0.5;  // cosine to the eye, from which on the head hides them
+const float UNEVEN = 0.5;   // random shift of highlights by lock
+const float BEHIND = -0.5;  // z of the normal in view space, below which the head hides locks
 
 void main() {
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_along;
@@ -31,7 +31,7 @@ void main() {
     aside *= sign(in_half) * drawn / max(length(aside), 1e-3);
     vec3 flat_along = along - dot(along, normal) * normal;
     HairLight light = hair_light(normal, flat_along, 1.0, middle, gloss);
-    // All corners of a lock have one normal, by which locks differ.
+    // All vertices of a lock have the same normal, which serves as its random seed.
     float shift = UNEVEN * (fract(dot(in_normal, vec3(157.3, 311.7, 71.9))) - 0.5);
     vec3 shine = light.shine * highlights(light.cosine, shift, in_colour);
     surface.shown = display(in_colour * light.diffuse + shine);
@@ -51,7 +51,7 @@ layout(location = 1) out vec4 pixel_surface;
 void main() {
     float wide = surface.half_width;
     float cover = min(2.0 * wide, 1.0) * clamp(max(wide, 0.5) + 0.5 - abs(surface.across), 0.0, 1.0);
-    pixel_surface = vec4(0.0);  // invisible, so that of what is behind stays
+    pixel_surface = vec4(0.0);  // transparent, so the number of the surface behind stays
     pixel_colour = vec4(surface.shown, surface.opacity * cover);
 }
 

@@ -310,7 +310,7 @@ const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 layout(location = 0) out vec4 pixel_colour;
 layout(location = 1) out vec4 pixel_surface;
 
-const vec3 THIN = vec3(1.06, 0.97, 0.96);  // of thin skin's albedo: muscle shows through
+const vec3 THIN = vec3(1.06, 0.97, 0.96);  // factor on the albedo of thin skin, where muscle shows
 
 // 1 where all ambient light arrives.
 float ambient_occlusion = 1.0;
@@ -415,7 +415,7 @@ void main() {
     normal = stranded(normal, surface.position, surface.fibre.x, strand.slope);
 #endif
 #if defined(BUMPS)
-    // Amounts are below 0 where a shut lid stretches its skin, which is thin and no longer in a fold.
+    // Amounts are negative where a shut lid stretches its skin, which is then thin and unfolded.
     float stretched = max(-max(surface.bump_amounts.x, surface.bump_amounts.y), 0.0);
     ambient_occlusion = mix(ambient_occlusion, 1.0, stretched);
     front *= mix(vec3(1.0), THIN, stretched);
