@@ -73,6 +73,9 @@ def test_an_unreadable_file_is_reported(desk, tmp_path):
     bad.write_bytes(bytes(range(256)))
     assert "is not text in UTF-8" in desk.drop(bad)
     assert "one of them is enough" in desk.drop(bad, tmp_path)
+    light = tmp_path / "Room.HDR"
+    light.write_bytes(b"#?RADIANCE")
+    assert "is a map of light, which `risorius capture --light` reads" in desk.drop(light)
     assert desk.messages.is_error
     assert desk.session.script is before
     bad.write_text(POSE)

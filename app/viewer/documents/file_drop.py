@@ -13,6 +13,7 @@ from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 from risorius.assets.meshes import FORMATS
 
 from ...errors import UserError
+from ...light_maps import LIGHT_SUFFIXES
 from ...recordings.reading import is_recording
 from ...scenes import Scene, build_scene, called_head, head_in_words, own_head
 from ..interface.gui import wake_up
@@ -28,11 +29,16 @@ def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
     """Return files by kind: mesh, landmarks, sound or script; a script may be a pose or recording.
 
     The suffix decides the kind; a JSON file is read, because it may be a recording. UserError for
-    two files of one kind.
+    two files of one kind, and for a map of light.
     """
     found: dict[str, Path] = {}
     for path in paths:
         end = Path(path.name.lower().removesuffix(".gz")).suffix  # reading reports a wrong .gz
+        if end in LIGHT_SUFFIXES:
+            raise UserError(
+                f"{path.name}: is a map of light, which `risorius capture --light` reads; the "
+                "window has the lights of its panel Scene"
+            )
         kind = "mesh" if end in MESH_SUFFIXES else "sound" if end in SOUND_SUFFIXES else "script"
         if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
