@@ -68,13 +68,26 @@ FALLING = Growth(
     root=0.4,
     tip=3.0,
     least=10.0,
-    longest=30.0,
+    longest=24.0,
     spread=0.12,
     half=0.08,
     lying=1.0,
     radius=75.0,
-    fringe=-0.8,
+    fringe=-1.0,
 )
+TIPS = Growth(
+    count=2200,
+    root=0.6,
+    tip=2.3,
+    least=3.6,
+    longest=6.0,
+    spread=0.1,
+    half=0.3,
+    lying=1.0,
+    radius=400.0,
+    fringe=1.0,
+)  # of cut hair, on the last millimetres
+INNER_TIPS = replace(TIPS, root=-0.1, tip=1.6)  # seen from within, before the innermost layer
 WOUND = replace(FALLING, count=350, longest=22.0, radius=30.0)  # on a knot, which is rounder
 
 

@@ -7,6 +7,7 @@ or hangs as a tail; either begins where the strands on the scalp meet.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,11 +22,11 @@ from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
-from .locks import FALLING, MEAN, WOUND, locks_on
+from .locks import FALLING, INNER_TIPS, MEAN, TIPS, WOUND, locks_on
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
 EDGE, ROUNDED = np.radians([62.0, 50.0])
-HEM = 5.0  # [mm] over which the tips of cut hair thin out
+HEM = 4.0  # [mm] over which the tips of cut hair thin out
 FULL = 2.0  # density at which all layers are full
 VOLUME = 9.0  # [mm] that hair stands off the head
 SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
@@ -60,10 +61,10 @@ def falling_hair(
     level_of_widest = np.array([0.0, -0.1, 0.0])  # strands leave the head a little below its centre
     ways = _turned(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
-    uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
+    uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
     # Beside the face the outer surface of the hair curves inward to its inner surface.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)
-    ragged_depth = 3.0  # [mm] of uneven tips
+    ragged_depth = 3.0  # [mm] of uneven tips, in waves of many strands: shorter ones are teeth
     layered_rise = 16.0  # [mm] that tips rise in front
     ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
     rise = np.clip(over / 0.35, 0.0, 1.0)  # 0 at the root, 1 where the volume is full
@@ -92,7 +93,22 @@ def falling_hair(
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
-    return from_within(hair, hair.faces), hair, locks_on(hair, FALLING)
+    return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING))
+
+
+def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
+    """Return hair, its inside, and locks at the tips of both.
+
+    sample_count: number of vertices along each strand.
+    """
+    inside = from_within(hair, hair.faces)
+    lit = replace(
+        inside, normals=-inside.normals
+    )  # locks that face away from the eye are not drawn
+    is_last = (hair.faces % sample_count >= sample_count - 2).all(axis=1)
+    inner = replace(lit, name=lit.name + "_tips", faces=lit.faces[is_last])
+    outer = replace(hair, name=hair.name + "_tips", faces=hair.faces[is_last])
+    return inside, hair, locks_on(inner, INNER_TIPS), locks_on(outer, TIPS)
 
 
 def _slide(along: Floats64) -> Floats64:

@@ -92,6 +92,8 @@ void main() {
     // Toward hems strands are fewer and shorter; where they are finer than a pixel, hair turns clear.
     float dense = surface.dense / seen + dot(RAGGED, tones);
     float there = clamp(mix(CRISP.x, CRISP.y, share.x) * (dense - 0.5) + 0.5, 0.0, 1.0);
+    // The first hairs of a hem are sparse from any side, else it has a torn edge seen from the side.
+    there *= clamp(4.0 * (surface.dense + dot(RAGGED, tones)), 0.0, 1.0);
     float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     if (cover < 0.08) discard;
