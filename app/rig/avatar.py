@@ -223,7 +223,7 @@ def _missing(file: FileHead) -> set[str]:
     """Return the names of built-in parts that a file lacks."""
     roles = {piece.role for piece in file.pieces}
     found: set[str] = set()
-    if not roles & {"eye_left", "eye_right"}:
+    if not roles & {"eye_left", "eye_right"} and not len(file.body.between_lids):
         found |= {"eyeball_left", "eyeball_right", "eye_corners"}
     if not roles & {"upper_teeth", "lower_teeth"}:
         found |= {"teeth_upper", "teeth_lower", "gums_upper", "gums_lower"}

@@ -18,7 +18,7 @@ from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.eyeballs import sphere_of
 from risorius.assets.fitting.mesh_validation import with_seams_joined
 from risorius.assets.meshes import Mesh
-from risorius.geometry.arrays import Floats64, Integers, Integers32
+from risorius.geometry.arrays import Flags, Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.normals import vertex_normals
@@ -40,7 +40,8 @@ class FileBody:
     """A body with all vertices of a file [mm], in the file's order.
 
     pivots: bone of an eyeball -> centre of the eyeball [mm], (3,).
-    in_bag: numbers of the vertices behind the lips that are not simulated, (n,).
+    in_bag, between_lids: numbers of the vertices behind the lips, and in eyes that are part of the
+    skin, that are not simulated, (n,) and (m,).
     """
 
     name = "head"
@@ -76,10 +77,15 @@ class FileBody:
         own = piece == piece[same[head.file_vertices[head.landmarks[0]]]]
         own &= np.isin(np.arange(len(own)), self.faces)
         self._skin = self._place >= 0
-        self.in_bag = np.flatnonzero(own & ~self._skin)
+        hidden = np.flatnonzero(own & ~self._skin)
+        is_eye = _is_near_eyes(self.rest[hidden], head)
+        self.in_bag = hidden[~is_eye]
+        self.between_lids = hidden[is_eye]
         lips = head.vertices[head.landmarks[60:68]].mean(axis=0)
         self._lip_height = float(lips[1])
-        self._bag = _Bag(self.in_bag, self.faces, self.rest) if len(self.in_bag) else None
+        self._bag = None
+        if len(hidden):
+            self._bag = _Bag(hidden, is_eye, self.faces, self.rest)
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
     def at(self, pose: Pose) -> Floats64:
@@ -103,7 +109,8 @@ class FileBody:
             moved[self._pieces["on_skin"]] = self._lashes.vertices
         if self._bag is not None:
             deep = self._bag.deep
-            moved[deep] = self._between_jaws(deep, mandible)
+            if len(deep):
+                moved[deep] = self._between_jaws(deep, mandible)
             self._bag.stretch(moved, self.rest)
         spread: Floats64 = moved[self._same]
         return spread
@@ -144,15 +151,25 @@ class FileBody:
         return SkinPart(part, head.vertices, head.faces)
 
 
-class _Bag:
-    """Skin behind the lips that is not simulated.
+def _is_near_eyes(points: Floats64, head: FittedHead) -> Flags:
+    """Return flags of points (n, 3) [mm] at the eyeballs: skin between the lids of a scan."""
+    near = 1.8  # radii of an eyeball
+    reaches = [np.linalg.norm(points - eye.centre, axis=1) / eye.radius for eye in head.eyes]
+    return np.asarray(np.min(reaches, axis=0) < near)
 
-    deep: numbers of the vertices in its deeper half, which moves with the jaws.
+
+class _Bag:
+    """Skin of a file that is not simulated: a bag behind the lips, and skin between the lids.
+
+    The deep half of the bag moves with the jaws. All else is stretched between placed vertices, so
+    skin between the lids does not pierce them when they shut.
     """
 
-    def __init__(self, numbers: Integers, faces: Integers32, rest: Floats64) -> None:
+    def __init__(self, numbers: Integers, is_eye: Flags, faces: Integers32, rest: Floats64) -> None:
         depth = rest[numbers, 2]
-        is_deep = depth < np.median(depth)
+        is_deep = ~is_eye
+        if is_deep.any():
+            is_deep &= depth < np.median(depth[is_deep])
         self.deep = numbers[is_deep]
         self._free = numbers[~is_deep]
         sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])

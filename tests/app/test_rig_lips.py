@@ -45,6 +45,28 @@ def test_an_avatar_keeps_triangles_across_mouth_and_eyes(tmp_path):
     assert opened[LOWER] < opened[UPPER] - 15.0
 
 
+@pytest.mark.slow
+def test_skin_between_the_lids_shuts_with_them(shut, tmp_path):
+    """The front of an eyeball that is part of the skin does not pierce the shut lids."""
+    eye = shut.landmarks[42:48]
+    mesh = closed(shut.mesh, eye)
+    middle = len(mesh.vertices) - 1
+    bulged = mesh.vertices + 0.0
+    bulged[middle, 2] += 3.0  # [mm]
+    files = UserHead(replace(mesh, vertices=bulged), shut.landmarks).write(tmp_path)
+    path = tmp_path / "avatar.glb"
+    lines = succeeded("rig", files[0], "--landmarks", files[1], "--parts", "-o", path)
+    assert "skin behind the lips" not in lines
+    player = Player(path)
+    parts = {mesh.name for mesh in player.file.meshes}
+    assert "oral_cavity_upper" in parts
+    assert "eyeball_left" not in parts
+    blink = player.shapes("head")["eyeBlinkLeft"]
+    upper, lower = (bulged + blink[: len(bulged)])[eye[[[1, 2], [5, 4]]], 1].mean(axis=1)
+    place = (bulged + blink[: len(bulged)])[middle, 1]
+    assert lower - 2.0 < place < upper + 2.0
+
+
 def write_glb(shut, folder):
     """Write the sealed head as a GLB whose halves have separate vertices at the seam."""
     vertices = shut.mesh.vertices
