@@ -83,6 +83,7 @@ __all__ = [
     "Coherent",
     "Connectivity",
     "Criterion",
+    "CubicScheme",
     "Cutting",
     "DetailScheme",
     "Displacement",

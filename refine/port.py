@@ -6,7 +6,7 @@ refiner needs none of it. `refine_gl` uses only `risorius.refine` and this modul
 """
 
 from .beyond.blending import FANS, RAMP_WIDTH
-from .beyond.cubic import STEEPENING_SHARE, follow_borders, weigh_corners
+from .beyond.cubic import STEEPENING_SHARE, weigh_corners
 from .beyond.displacement import GROWTH_SHARE
 from .beyond.measuring import mean_length
 from .beyond.options import criterion_of
@@ -15,7 +15,7 @@ from .kahler.coherence import sequence_tables
 from .kahler.criterion import find_undefined_normals
 from .kahler.refiner import points_on_edges
 from .kahler.table import CENTRE, CONFIGURATIONS
-from .mesh.borders import border_neighbours
+from .mesh.borders import border_neighbours, follow_borders
 from .mesh.rings import vertex_rings
 
 __all__ = [

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine
+from risorius.assets.identities import Person
 from risorius.geometry.arrays import Floats64, Integers32
 
 from ..errors import UserError
@@ -20,6 +21,7 @@ from .presets import PAPERS_CRITERION, PRESETS, STATIC, THRESHOLDS, Refinement, 
 
 Splits = npt.NDArray[np.uint8]
 
+CUBIC = "cubic"
 DETAIL = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
 OF = "."  # mark between a criterion and its option
@@ -50,6 +52,8 @@ def refiner_for(
             if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
             options["scheme"] = refine.DetailScheme(finer)
+        if options.get("scheme") == CUBIC and _takes_own_schemes(name):
+            options["scheme"] = refine.CubicScheme(_outlines(scene))
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
@@ -151,6 +155,17 @@ def _in_words(option: refine.Option) -> str:
 def _takes_own_schemes(refiner: str) -> bool:
     """Whether the option `scheme` of a refiner takes any name or object."""
     return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
+
+
+def _outlines(scene: Drawable) -> list[list[int]]:
+    """Return the rims of nostrils, outlines from below, of the built-in head and of persons.
+
+    The first vertex of a rim is the outermost. It lies in a fold, so its edges are no outline.
+    """
+    if scene.face is None or not isinstance(scene.face.head, assets.Head | Person):
+        return []
+    rims = [assets.load("head").rings[f"nostril_{side}"].tolist() for side in ("left", "right")]
+    return [[*rim, rim[0]] for rim in rims]
 
 
 def can_detail(scene: Drawable) -> bool:

@@ -30,18 +30,19 @@ its neighbours, as in the paper (section 4.4). surface_normals.py computes norma
 surface instead.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.arrays import Floats32, Floats64, Unsigned32
+from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..kahler.scheme import Scheme
-from ..mesh.borders import border_neighbours
+from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.creases import sectors_of
+from ..mesh.creases import sectors_of, sharpened
 from ..mesh.fans import Fans, fans_around, fans_of
 from ..mesh.normals import cross_product, normalise
 from ..mesh.threads import share
@@ -115,11 +116,22 @@ class CubicScheme(Scheme):
     uses_normals = False
     measures = True
 
+    def __init__(self, outlines: Sequence[Sequence[int]] = ()) -> None:
+        """`outlines`: vertices along rims within the surface, whose edges bend like borders.
+
+        The first and the last edge of a rim only give their direction to their neighbours.
+        """
+        self._outlines = [[int(vertex) for vertex in outline] for outline in outlines]
+
+    def outlined(self, connectivity: Connectivity) -> Flags:
+        """Edges of the outlines, shape (E,)."""
+        return edges_of_outlines(connectivity, self._outlines)
+
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
-        """Weigh the corners of the mesh at rest, and follow its borders."""
-        mesh = self._mesh = connectivity
+        """Weigh the corners of the mesh at rest, and follow its borders and outlines."""
+        mesh = self._mesh = sharpened(connectivity, self.outlined(connectivity))
         self._around = mesh.around
         sectors = sectors_of(mesh)
         self._fans = fans_around(sectors.corners, sectors.edges, sectors.sector_count)
@@ -135,7 +147,7 @@ class CubicScheme(Scheme):
             steeper=np.zeros_like(sector_normals),
             off=(STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
             ends=sectors.edges[: len(mesh.edges)],
-            beyond=follow_borders(mesh, rest_positions),
+            beyond=follow_outlines(mesh, follow_borders(mesh, rest_positions), self._outlines),
         )
         # For shading, both sides of a crease are one surface, as in the input.
         self._normals = sector_normals
@@ -174,17 +186,15 @@ class CubicScheme(Scheme):
         crosses = self._crosses
         share(cross_products, len(crosses), positions, self._mesh.faces, crosses)
         corners = fans.corner_starts, fans.corners
-        count = len(tangents.off)
-        share(weighted_normals, count, *corners, self._weights, crosses, tangents.normals)
+        weights = self._weights, crosses, tangents.normals
+        share(weighted_normals, len(tangents.off), *corners, *weights)
         if self._whole_fans is not None:
             around = self._whole_fans.corner_starts, self._whole_fans.corners
-            count_of_vertices = len(positions)
             given = self._weights, crosses, self._normals
-            share(weighted_normals, count_of_vertices, *around, *given)
+            share(weighted_normals, len(positions), *around, *given)
         neighbours = fans.neighbour_starts, fans.neighbours
-        share(steepen_normals, count, *neighbours, *tangents[:3])
-        edges = self._around, positions, tangents
-        share(displace_cubic, len(self._mesh.edges), *edges, self._rows)
+        share(steepen_normals, len(tangents.off), *neighbours, *tangents[:3])
+        share(displace_cubic, len(self._mesh.edges), self._around, positions, tangents, self._rows)
 
 
 @njit
@@ -202,16 +212,6 @@ def weigh_corners(positions: Floats64, faces: Unsigned32, weights: Rows) -> None
             area = np.sqrt(dot(normal, normal))
             angle = np.arctan2(area, dot(u, v))
             weights[t, i] = np.sqrt(angle / area) if area > SLIVER_SINE * size else 0.0
-
-
-def follow_borders(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
-    """Find the vertices before and after every border edge, shape (E, 2).
-
-    At a corner of the border it is the end of the edge itself. Rows of other edges have no meaning.
-    """
-    neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
-    others = mesh.edges[:, ::-1].view(np.uint32)
-    return np.where(neighbours[..., 0] != others, neighbours[..., 0], neighbours[..., 1])
 
 
 @njit

@@ -61,6 +61,7 @@ class DetailScheme(CubicScheme):
                 "scheme=refine.DetailScheme((rest positions, triangles)), "
                 f"got {type(finer).__name__}"
             )
+        super().__init__()
         positions, faces = checked_mesh(*finer, ("finer[0]", "finer[1]"))
         if len(faces) == 0:
             raise ValueError("finer[1] must have triangles, got none")

@@ -26,11 +26,12 @@ Differs from the paper, whose rule is `normals="linear"`.
 
 import numpy as np
 
-from ...geometry.arrays import Floats32, Floats64, Integers32, Unsigned32
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
 from ...jit import njit
 from ..kahler.frame import ONCE, ROWS, FrameBuffers
 from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
+from ..mesh.creases import sharpened
 from ..mesh.threads import share
 from ..mesh.vectors import (
     ONE,
@@ -69,6 +70,9 @@ class RefinedNormals(Scheme):
     ) -> None:
         """Bind the scheme, and allocate its surface."""
         self._scheme.bind(connectivity, rest_positions, rest_normals)
+        outlined = self.outlined(connectivity)
+        if outlined.any():
+            connectivity = sharpened(connectivity, outlined)
         self._mesh = connectivity
         self._surface = WholeSurface(connectivity, rest_positions)
         on_crease = np.zeros(connectivity.vertex_count, dtype=np.bool_)
@@ -93,6 +97,10 @@ class RefinedNormals(Scheme):
         self._scheme.place_centres(frame)
         triangles = self._mesh.faces, self._mesh.triangle_edges
         share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
+
+    def outlined(self, connectivity: Connectivity) -> Flags:
+        """Edges within the surface that the scheme takes as outlines, shape (E,)."""
+        return self._scheme.outlined(connectivity)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split moves the middle of every edge, and turns its normal, (E,) each.

@@ -27,7 +27,7 @@ import numpy as np
 
 from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...jit import njit
-from ..beyond.cubic import follow_borders
+from ..mesh.borders import follow_borders
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row

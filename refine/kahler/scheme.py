@@ -4,7 +4,9 @@ Kähler, Haber, Seidel 2003, section 6: "the effects of other smoothing schemes"
 paper's own is in smoothing.py.
 """
 
-from ...geometry.arrays import Floats32, Floats64
+import numpy as np
+
+from ...geometry.arrays import Flags, Floats32, Floats64
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
 from .frame import FrameBuffers
@@ -51,6 +53,10 @@ class Scheme:
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Correct the points in the middle of triangles, after blending has written them."""
+
+    def outlined(self, connectivity: Connectivity) -> Flags:
+        """Edges within the surface that are outlines, as borders are, shape (E,): none."""
+        return np.zeros(len(connectivity.edges), np.bool_)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move the middle of each edge and turn its normal, (E,) each.

@@ -6,9 +6,12 @@ turns back along the lower lip. Corners are found on the mesh at rest and remain
 moves.
 """
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 
-from ...geometry.arrays import Floats64, Unsigned32
+from ...geometry.arrays import Flags, Floats64, Unsigned32
 from .connectivity import Connectivity
 
 CORNER_COSINE = 0.5
@@ -45,3 +48,40 @@ def border_neighbours(mesh: Connectivity, rest_positions: Floats64) -> Unsigned3
     )
     neighbours[vertices[is_straight]] = pairs[is_straight]
     return neighbours
+
+
+def follow_borders(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
+    """Find the vertices before and after every border edge, shape (E, 2).
+
+    At a corner of the border it is the end of the edge itself. Rows of other edges have no meaning.
+    """
+    neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
+    others = mesh.edges[:, ::-1].view(np.uint32)
+    return np.where(neighbours[..., 0] != others, neighbours[..., 0], neighbours[..., 1])
+
+
+def follow_outlines(
+    mesh: Connectivity, beyond: Unsigned32, outlines: Sequence[Sequence[int]]
+) -> Unsigned32:
+    """Return `beyond`, shape (E, 2), with the vertices before and after each edge of outlines."""
+    if not outlines:
+        return beyond
+    around = {}
+    for rim in outlines:
+        for before, first, last, after in zip(rim, rim[1:], rim[2:], rim[3:], strict=False):
+            around[first, last] = before, after
+            around[last, first] = after, before
+    found = beyond.copy()
+    for number in np.flatnonzero(mesh.is_sharp).tolist():
+        edge = tuple(mesh.edges[number].tolist())
+        found[number] = around.get(edge, beyond[number])
+    return found
+
+
+def edges_of_outlines(mesh: Connectivity, outlines: Sequence[Sequence[int]]) -> Flags:
+    """Edges between the second and the last but one vertex of each outline, shape (E,)."""
+    inner = {frozenset(edge) for rim in outlines for edge in pairwise(rim[1:-1])}
+    edges = mesh.edges.tolist() if inner else ()
+    found = np.zeros(len(mesh.edges), np.bool_)
+    found[[number for number, edge in enumerate(edges) if frozenset(edge) in inner]] = True
+    return found

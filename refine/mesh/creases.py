@@ -63,7 +63,7 @@ def with_creases(
 
 
 def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
-    """Make the flagged interior edges, shape (E,), creases."""
+    """Make the flagged interior edges, shape (E,), creases, beside those that are."""
     is_sharp = is_sharp & mesh.around.is_interior
     edges = np.flatnonzero(is_sharp)
     points = mesh.around.points.copy()
@@ -72,7 +72,7 @@ def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
     wings[edges] = edges[:, None]
     is_interior = mesh.around.is_interior & ~is_sharp
     around = mesh.around._replace(points=points, wings=wings, is_interior=is_interior)
-    return mesh._replace(around=around, is_sharp=is_sharp)
+    return mesh._replace(around=around, is_sharp=is_sharp | mesh.is_sharp)
 
 
 def dihedral_angles(mesh: Connectivity, positions: Floats64) -> Floats64:
