@@ -51,7 +51,7 @@ class Compression:
         self._resting = wrinkles.resting[:, None] * whole
         self._folds = wrinkles.folds[:, None] * whole
         self._lids = wrinkles.lids[:, None] * whole
-        self._has_folds = bool(self._folds.any() or self._lids.any())
+        self._has_folds = bool(self._folds.any())
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def measure(self, positions: Points, strength: float = 1.0) -> Wrinkling | None:
@@ -85,7 +85,8 @@ class Compression:
         shown = np.maximum(amounts, self._resting * left)
         if strength != 1.0:
             shown = np.maximum(strength * shown, self._folds * left)
-        gained = np.square(np.minimum(lost, 0.0))
+        least_gain = 0.08  # that shows: lids move a little in most poses, and bumps take time
+        gained = np.square(np.minimum(lost + least_gain, 0.0))
         half_open_gain = 0.4  # gain of length of a lid that is half shut
         shown -= self._lids * gained / (gained + half_open_gain**2)
         return np.asarray(shown, np.float32)
