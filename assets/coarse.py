@@ -30,7 +30,7 @@ class CoarseHead(FittedHead):
     """A head with some vertices of the built-in head. Besides the fields of a fitted head it has:
 
     mandible_weight, jaw_axis, mirror: as in `Head`.
-    anatomy: the anatomical points among its vertices, name -> vertex number.
+    anatomy: the anatomical points among its vertices, name -> vertex index.
     """
 
     mandible_weight: Floats64

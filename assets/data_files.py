@@ -28,7 +28,7 @@ def _errors_named(path: Path) -> Iterator[None]:
 
 
 def read_arrays(path: Path) -> Arrays:
-    """Read an npz file, array name -> array, read-only; AssetError if it is missing or broken."""
+    """Read an npz file: name -> read-only array; raises AssetError if it is missing or broken."""
     with _errors_named(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     for array in arrays.values():
@@ -37,13 +37,13 @@ def read_arrays(path: Path) -> Arrays:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Read a TOML file; AssetError if it is missing or broken."""
+    """Read a TOML file; raises AssetError if it is missing or broken."""
     with _errors_named(path):
         return tomllib.loads(path.read_text("utf-8"))
 
 
 def read_image(path: Path, *, mode: str = "RGB") -> Image:
-    """Read an image, shape (H, W, 3), in mode "L" (H, W), uint8, read-only; or AssetError."""
+    """Read an image, (H, W, 3) or in mode "L" (H, W), uint8, read-only; raises AssetError."""
     import PIL.Image  # imported late, so that loading a head is fast
 
     with _errors_named(path), PIL.Image.open(path) as file:

@@ -32,7 +32,7 @@ class GltfSurface:
 
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
     same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the same
-    triangles with the vertex numbers of the file, shape (F, 3). texture: pictures and their places;
+    triangles with the vertex indices of the file, shape (F, 3). texture: pictures and their places;
     None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8; None without any.
     has_colour: flags of vertices with a colour, shape (V,).
     """
@@ -50,11 +50,11 @@ class GltfSurface:
 class StoredPiece:
     """One primitive of a mesh in one node: the places of its vertices in the file.
 
-    node, mesh, primitive: their numbers; primitives are numbered within a mesh. count: number of
+    node, mesh, primitive: their indices; primitives are counted within a mesh. count: number of
     vertices, which follow the vertices of earlier pieces. to_scene: maps displacements of stored
-    places to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: corners in
-    the file's direction, numbers within the piece, shape (F, 3). name: name of the node, or of its
-    mesh.
+    places to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: vertex
+    indices within the piece, in the file's winding order, shape (F, 3). name: name of the node, or
+    of its mesh.
     """
 
     node: int
@@ -179,7 +179,7 @@ class _Reader:
         return str(node.name or self._document.meshes[node.mesh].name or "")
 
     def _shown(self) -> list[int]:
-        """The nodes of the scene, from its last root down: vertex numbers follow this order."""
+        """The nodes of the scene, from its last root down: vertex indices follow this order."""
         document = self._document
         if document.scenes:
             waiting = [*(document.scenes[document.scene or 0].nodes or [])]

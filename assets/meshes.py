@@ -1,6 +1,6 @@
 """Read a user's triangle mesh, OBJ, PLY, STL, OFF, glTF or GLB, and its paint.
 
-Every vertex and triangle keeps its number in the file, because landmarks and animation caches
+Every vertex and triangle keeps its index in the file, because landmarks and animation caches
 depend on it. trimesh reads STL and OFF; it may merge and reorder vertices, and from other formats
 it omits or misreads data that heads have. pictures.py has the paint of OBJ.
 """
@@ -38,12 +38,12 @@ class Mesh:
     """A plain triangle mesh: the least that `sim.create` and `refine.create` need.
 
     - vertices: positions [unit of the file], shape (V, 3), float64.
-    - faces: vertex numbers, shape (F, 3), int32.
+    - faces: vertex indices, shape (F, 3), int32.
     - texture: texture of the file; None if the file has none.
     - colours: vertex colours, sRGB, shape (V, 3), uint8; None if the file has none.
     - has_colour: whether each vertex has a colour, shape (V,); None: all have.
     - same: for each vertex, the coinciding vertex that `faces` use instead, shape (V,).
-    - corners: triangles with the vertex numbers of the file, shape (F, 3), if some vertices
+    - corners: triangles with the vertex indices of the file, shape (F, 3), if some vertices
       coincide; None: equal to `faces`.
     - notes: lines with remarks for the user.
     """
@@ -61,7 +61,7 @@ class Mesh:
         make_read_only(self)
 
     def without(self, triangles: npt.NDArray[np.integer[Any]]) -> Self:
-        """Return the mesh without the flagged triangles; vertices keep their numbers."""
+        """Return the mesh without the flagged triangles; vertices keep their indices."""
         left = np.delete(np.arange(len(self.faces)), triangles)
         texture = self.texture
         if texture is not None:
@@ -73,7 +73,7 @@ class Mesh:
 def read_mesh(path: str | Path) -> Mesh:
     """Read one triangle mesh; several in one file become one, polygons become triangles.
 
-    STL has no vertex numbers: there, corners in the same place become one vertex.
+    STL has no vertex indices: there, corners in the same place become one vertex.
 
     Raises AssetError for a file that is missing, of an unknown format, too large, broken, or has no
     triangles.
@@ -124,7 +124,7 @@ def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
 
 
 def _numbers(faces: npt.NDArray[Any]) -> Integers32:
-    """Vertex numbers as 32-bit integers, clipped; larger ones are invalid in any mesh."""
+    """Vertex indices as 32-bit integers, clipped; larger ones are invalid in any mesh."""
     return faces.clip(-1, np.iinfo(np.int32).max).astype(np.int32)
 
 

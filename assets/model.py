@@ -83,12 +83,12 @@ class Part:
     - name: unique within the head.
     - vertices: rest positions [mm], shape (n, 3), float32.
     - normals: unit normals, shape (n, 3), float32.
-    - faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
+    - faces: vertex indices, counter-clockwise from the visible side, shape (m, 3), int32.
     - colours: sRGB 0..1, shape (n, 3), float32.
     - bone: the bone that moves the part: "cranium", "mandible", "eye_left" or "eye_right". Parts
       with the bone "neck" do not move.
     - shine: specular strength, 0 (dull) to 1 (wet).
-    - roots: for a part on the skin, the number of the root of each vertex, (n,), int32. The root is
+    - roots: for a part on the skin, the index of the root of each vertex, (n,), int32. The root is
       a vertex of the part, and its motion on the skin moves the vertex. None for other parts.
     - strand_radius: radius of the part's hairs [mm]; 0 for a part without hairs.
     - mandible_shares: for a part that stretches between both jaws, the weight of the mandible's
@@ -168,7 +168,7 @@ class Wrinkles:
 
 
 class FineShape(NamedTuple):
-    """Fine shape of a skin at rest, beyond its triangles, in the layout of `uv`."""
+    """Relief of a skin at rest that is finer than its triangles, as a map in the layout of `uv`."""
 
     slopes: Image
     """Slopes of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
@@ -208,14 +208,14 @@ class Head:
     """A head to simulate and draw.
 
     - vertices: rest positions of the skin [mm], shape (V, 3), float64.
-    - faces: vertex numbers, shape (F, 3), int32.
-    - landmarks: vertex numbers of the 68 iBug points, shape (68,), int32.
+    - faces: vertex indices, shape (F, 3), int32.
+    - landmarks: vertex indices of the 68 iBug points, shape (68,), int32.
     - bone_depth: distance from the skin to the bone beneath [mm], shape (V,), float64.
     - mandible_weight: 0 = moves with the cranium, 1 = with the mandible, shape (V,), float64.
     - jaw_axis: centres of the right and the left condyle [mm], shape (2, 3), float64.
-    - mirror: number of the mirror image of each vertex, shape (V,), int32.
-    - anatomy: named anatomical points, name -> vertex number.
-    - rings: named vertex rows of the left side, name -> vertex numbers, shape (n,), int32; the same
+    - mirror: index of the mirror image of each vertex, shape (V,), int32.
+    - anatomy: named anatomical points, name -> vertex index.
+    - rings: named vertex rows of the left side, name -> vertex indices, shape (n,), int32; the same
       rows with _right for the right side. `eye_0_left` to `eye_4_left` run outward around the eye;
       `mouth_0_left` to `mouth_7_left` around half of the mouth, from the middle of the upper lip
       over the corner to the middle of the lower lip (2: where the lips meet, 6: border of the red);
@@ -226,8 +226,8 @@ class Head:
     - parts: rigid parts that are drawn with the head.
     - uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
       piece without seams, so that U = V.
-    - face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
-      same numbers as `faces`.
+    - face_uv: indices of the texture coordinates of each face's corners, shape (F, 3), int32; the
+      same indices as `faces`.
     - file: data file of the head. Maps and meshes for drawing lie beside this file, and are read at
       their first use; an unreadable file raises AssetError.
     - rig: the parsed rig file.
@@ -292,7 +292,7 @@ class Head:
 
     @cached_property
     def fine_shape(self) -> FineShape:
-        """The fine shape of the skin."""
+        """The relief of the skin that is finer than its triangles."""
         arrays = read_arrays(self.beside("_fine_shape.npz"))
         slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps compress better
         slopes.flags.writeable = False
@@ -331,7 +331,7 @@ class Plane:
     """The triangulated plane of the paper's Figure 9.
 
     - vertices: rest positions [mm], shape (96, 3), float64, in the plane z = 0.
-    - faces: vertex numbers, counter-clockwise seen from +z, shape (154, 3), int32.
+    - faces: vertex indices, counter-clockwise seen from +z, shape (154, 3), int32.
     """
 
     vertices: Floats64

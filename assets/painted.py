@@ -38,10 +38,10 @@ class PaintedMesh:
     """A mesh file with its whole appearance.
 
     mesh: the result of `read_mesh`; V vertices in the file's order, F triangles.
-    uv: texture coordinates, v up, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
-    normals: shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
-    material: place in `materials` of each triangle, -1 for none, shape (F,).
-    part: place in `parts` of each triangle, -1 for none, shape (F,). parts: names of the file's
+    uv: texture coordinates, v up, shape (U, 2). face_uv: their indices, -1 for none, shape (F, 3).
+    normals: shape (N, 3). face_normals: their indices, -1 for none, shape (F, 3).
+    material: index into `materials` of each triangle, -1 for none, shape (F,).
+    part: index into `parts` of each triangle, -1 for none, shape (F,). parts: names of the file's
     objects or groups, or of materials in a file without these.
     libraries: names of the files that define materials.
     """

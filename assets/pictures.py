@@ -34,7 +34,7 @@ class Texture:
 
     - uv: texture coordinates, v up, shape (U, 2), float32.
     - face_uv: row of `uv` at each corner of triangles, shape (F, 3), int32.
-    - picture: number in `pictures` for each triangle, or -1, shape (F,).
+    - picture: index into `pictures` for each triangle, or -1, shape (F,).
     - pictures: functions each of which reads a picture, (H, W, 3), or raises AssetError.
     """
 

@@ -211,7 +211,7 @@ def _table(element: _Element, lengths: list[int], body: _Numbers | _Bytes) -> di
 
 
 def _corners(columns: dict[str, Any]) -> _Lists:
-    """The lists of vertex numbers among the columns of polygons or strips."""
+    """The lists of vertex indices among the columns of polygons or strips."""
     lists = {name: each for name, each in columns.items() if isinstance(each, _Lists)}
     named = [each for name, each in lists.items() if name in ("vertex_indices", "vertex_index")]
     found = [*named, *lists.values()][0]

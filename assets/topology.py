@@ -66,13 +66,13 @@ def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
 
 
 def border_vertices(faces: Faces) -> Integers64:
-    """Numbers of the vertices on edges with one face, in ascending order."""
+    """Indices of the vertices on edges with one face, in ascending order."""
     edges, numbers = different_pairs(np.sort(sides_of(faces), axis=1))
     return np.unique(edges[np.bincount(numbers) == 1])
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
-    """Triangles between neighbouring rows of vertex numbers (r, n); closed: rows are rings.
+    """Triangles between neighbouring rows of vertex indices (r, n); closed: rows are rings.
 
     a--d   Vertices a and d are of a row, b and c of the next one: a b c, then a c d.
     | \\|
@@ -97,7 +97,7 @@ class Quartered(NamedTuple):
 def quarter(faces: Faces, vertex_count: int) -> Quartered:
     """Cut every triangle into four; edge e gets the new vertex `vertex_count` + e.
 
-            c           Old vertices keep their numbers. The four children of face f are the faces
+            c           Old vertices keep their indices. The four children of face f are the faces
            / \\          4 f to 4 f + 3: corner a, corner b, corner c, middle.
          ca---bc
          / \\ / \\

@@ -31,11 +31,11 @@ class ObjSurface:
     """The surface that an OBJ file describes.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
-    uv: texture coordinates, shape (U, 2). face_uv: their numbers, -1 for none, shape (F, 3).
-    normals: as in the file, shape (N, 3). face_normals: their numbers, -1 for none, shape (F, 3).
-    material: place in `materials` of each triangle, -1 for none, shape (F,).
+    uv: texture coordinates, shape (U, 2). face_uv: their indices, -1 for none, shape (F, 3).
+    normals: as in the file, shape (N, 3). face_normals: their indices, -1 for none, shape (F, 3).
+    material: index into `materials` of each triangle, -1 for none, shape (F,).
     libraries: names of files that define materials.
-    part: place in `parts`, the names of objects and groups, of each triangle, -1 for none, (F,).
+    part: index into `parts`, the names of objects and groups, of each triangle, -1 for none, (F,).
     """
 
     vertices: Floats64

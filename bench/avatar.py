@@ -66,7 +66,7 @@ class Row(NamedTuple):
 
 
 def makehuman(folder: Path) -> HeadFile:
-    """MakeHuman's base mesh from a folder; UserError if it is missing."""
+    """MakeHuman's base mesh from a folder; raises UserError if it is missing."""
     head = HeadFile("MakeHuman hm08", folder / "base.obj", folder / "base.json")
     for path in (head.mesh, head.landmarks):
         if not path.is_file():

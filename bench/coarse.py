@@ -99,7 +99,8 @@ class Comparison:
 
     def angles(self, tried: Layout, scheme: str = "cubic") -> Mapping[str, float]:
         """The RMS angle [degrees] of each group, weighted by area; "face" is for all
-        FREE_GROUPS."""
+        FREE_GROUPS.
+        """
         head = self._head
         faces = np.vstack([tried.triangles, head.mirror[tried.triangles][:, ::-1]])
         edge_count = len(refine.create("kahler", faces, head.vertices).edges)
@@ -183,7 +184,8 @@ def flipped(start: Layout, first: int, second: int) -> Layout | None:
 
 def _is_sound(tried: Layout, start: Layout, head: CoarseHead, outward: Floats64) -> bool:
     """Whether flipped triangles are wide and face outward, and no vertex has too many
-    neighbours."""
+    neighbours.
+    """
     is_new = (tried.triangles != start.triangles).any(axis=1)
     triangles = tried.triangles[is_new]
     smallest = np.degrees(trimesh.triangles.angles(head.vertices[triangles])).min()

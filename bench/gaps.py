@@ -139,7 +139,8 @@ def meshes_of(
     simulation: sim.Simulation, refiner: refine.Refiner
 ) -> dict[str, tuple[Floats64, Triangles]]:
     """Positions [mm] and triangles of the simulated mesh ("static") and the refined mesh
-    ("refined")."""
+    ("refined").
+    """
     drawn = refiner.refine(simulation.positions)
     return {
         "static": (simulation.positions, simulation.faces),
@@ -166,7 +167,7 @@ def _turned_by(yaw: float, pitch: float) -> Floats64:
 
 
 def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
-    """Triangles (n, 3, 3) of the head's eyeballs with their present turn, by side."""
+    """Triangles (n, 3, 3) of the head's eyeballs with their current turn, by side."""
     bones = simulation.bones.transforms()
     found = {}
     for part in head.parts:

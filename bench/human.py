@@ -104,7 +104,8 @@ class IdentitySpace:
 
     def _hidden(self) -> Flags:
         """Flags of vertices that face other skin straight ahead or in three of seven directions,
-        (V,)."""
+        (V,).
+        """
         facing = vertex_normals(self.mean, self.triangles)
         aside = unit_vectors(np.cross(facing, np.roll(facing, 1, axis=1)))
         upward = np.cross(facing, aside)
@@ -238,7 +239,8 @@ def _feet(
     points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
     """Nearest point of the surface to each point, its normal, and the cosine between both
-    normals."""
+    normals.
+    """
     own = vertex_normals(points, triangles)[asked]
     at = nearest_on(points[asked], own, surface.vertices, surface.faces)
     facing = at.interpolate(surface.normals)

@@ -89,7 +89,7 @@ def is_installed(detector: str) -> bool:
 
 @contextlib.contextmanager
 def opened(detector: str, model: Path | None) -> Iterator[Detector]:
-    """Open a detector of `DETECTORS` with its model; UserError for a missing or wrong file.
+    """Open a detector of `DETECTORS` with its model; raises UserError for a missing or wrong file.
 
     The detector takes a picture (H, W, 3) and returns its 68 points, shape (68, 2) [pixels, the
     middle of the first pixel is 0.5], or None if it finds no face.
@@ -212,7 +212,7 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
 
 
 def measure(folder: Path, name: str, detector: Detector) -> Finding:
-    """Compare a detector with the labels of a set; UserError if the folder has no samples."""
+    """Compare a detector with the labels of a set; raises UserError if there are no samples."""
     files = sorted(folder.glob("[0-9]*.json"))
     if not files:
         raise UserError(f"{folder}: holds no data set; make one with `risorius dataset`")

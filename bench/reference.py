@@ -118,7 +118,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
 
 
 def _landmarks(readme: Path) -> Integers32:
-    """The 68 landmarks as vertex numbers, from the checkout's README."""
+    """The 68 landmarks as vertex indices, from the checkout's README."""
     found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:
         raise UserError(f"{readme}: names no 68 landmarks; that of ICT-FaceKit does")

@@ -165,7 +165,7 @@ def settled_positions(
 
 
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
-    """All arrays of a file; UserError if it is broken or one of `needed` is missing."""
+    """All arrays of a file; raises UserError if it is broken or one of `needed` is missing."""
     if not path.is_file():
         raise UserError(f"{path}: is not there; `risorius bench reference` makes such a folder")
     try:

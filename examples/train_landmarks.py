@@ -119,7 +119,8 @@ def block(before: int, after: int, stride: int = 1) -> nn.Sequential:
 
 class Network(nn.Module):
     """Predicts points as means of 24 x 24 heat maps (Sun et al. 2018, "Integral human pose
-    regression")."""
+    regression").
+    """
 
     def __init__(self) -> None:
         super().__init__()

@@ -25,10 +25,10 @@ class WeldedRefiner:
         mesh = refiner.refine(moved, values={"heat": heat})      # every frame
         draw(mesh.positions, mesh.triangles, mesh.attributes["heat"])
 
-    Such a mesh has a vertex twice where its two sides carry different data. Doubled vertices are
-    welded for refinement, so that no crack opens between them, and are separate again in the
-    refined mesh. The default options are those of the application's window, `scheme="cubic",
-    criterion="displacement+rest"`, which also smooth a mesh that did not move.
+    Such a mesh stores a seam vertex twice, because the data on both sides of the seam differ.
+    Doubled vertices are welded for refinement, so that no crack opens between them, and are
+    separate again in the refined mesh. The default options are those of the application's window,
+    `scheme="cubic", criterion="displacement+rest"`, which also smooth a mesh at rest.
     """
 
     def __init__(

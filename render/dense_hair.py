@@ -19,7 +19,10 @@ def hide_below(
     target: RenderTarget,
     program: moderngl.Program,
 ) -> None:
-    """Draw the depths of dense hair among parts; program: shadow.glsl with the define SHELLS."""
+    """Write the depths of dense hair, so that skin below it is not shaded.
+
+    parts: those that are not hair are ignored. program: shadow.glsl with the define SHELLS.
+    """
     # These depths equal those of the lowest layer of hair, so rounding would hide parts of it.
     program.ctx.polygon_offset = FARTHER
     for each in parts:

@@ -26,7 +26,7 @@ class DrawnPart(Protocol):
     - name: name in messages.
     - vertices, normals: (n, 3), float32. A deformable part returns new arrays of the same shape
       after each change.
-    - faces: vertex numbers, counter-clockwise from outside, (m, 3), int32. Back faces do not show.
+    - faces: vertex indices, counter-clockwise from outside, (m, 3), int32. Back faces do not show.
     - colours: sRGB, 0 to 1, (n, 3), float32.
     - bone: name of the bone whose transform moves the part.
     - shine: specular strength, 0 (dull) to 1 (wet).

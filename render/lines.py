@@ -25,7 +25,7 @@ class Lines(NamedTuple):
     """Opacity in front of all surfaces, 0 to 1."""
 
     def segments(self) -> tuple[Floats32, Unsigned32]:
-        """Return positions and sRGB of points, (n, 6), and point numbers of segments, (s, 2)."""
+        """Return positions and sRGB of points, (n, 6), and point indices of segments, (s, 2)."""
         polylines = self.polylines
         colours = np.asarray(self.colour, np.float32)
         counts = np.array([len(line) for line in polylines], np.int64)

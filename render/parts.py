@@ -204,7 +204,7 @@ class PartStore:
         ]
 
     def _buffers_of(self, placed: PlacedPart) -> PartBuffers:
-        """Return the buffers of a part, uploaded with its present shape."""
+        """Return the buffers of a part, uploaded with its current shape."""
         part = placed.part
         get_known, buffers = self._known.get(id(part), (None, None))
         if get_known is None or buffers is None or get_known() is not part:

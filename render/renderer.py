@@ -136,7 +136,7 @@ class Renderer:
         return self._geometry_buffer.draw(frame, parts, self._placed_view(frame))
 
     def _placed_view(self, frame: Frame) -> PlacedView:
-        """Place a frame's view on the present target."""
+        """Place a frame's view on the current target."""
         if frame.skin is not None:
             frame.skin.check()
         return PlacedView(frame.view, self.surface.target.size, self.surface.scale)

@@ -67,7 +67,7 @@ class UploadedMesh(Protocol):
 
     @property
     def triangles(self) -> Unsigned32:
-        """Vertex numbers, (triangle_count, 3)."""
+        """Vertex indices, (triangle_count, 3)."""
 
 
 class _Uploaded(NamedTuple):
@@ -220,8 +220,8 @@ class Stream(MeshBuffers):
 
     - vertices: rows x y z, nx ny nz[, u v[, columns of bumps]], (vertex_capacity, columns),
       float32.
-    - triangles: vertex numbers, (triangle_capacity, 3), uint32.
-    - source: number of the base triangle of each triangle, (triangle_capacity,), int32; not
+    - triangles: vertex indices, (triangle_capacity, 3), uint32.
+    - source: index of the base triangle of each triangle, (triangle_capacity,), int32; not
       uploaded.
     """
 
@@ -279,7 +279,7 @@ class GpuStream(MeshBuffers):
     colours by triangle, and edge smoothing with software OpenGL.
 
     - vertex_buffer, index_buffer: vertices and triangles, as in a `Stream`.
-    - source_buffer: number of the base triangle of each triangle, int32.
+    - source_buffer: index of the base triangle of each triangle, int32.
     - command_buffer: 7 uint32, a DrawElementsIndirectCommand, then the numbers of vertices and of
       triangles.
     """

@@ -72,7 +72,7 @@ class WindowSurface(Surface):
         self._glfw.set_window_should_close(self.handle, value)
 
     def begin(self) -> None:
-        """Start a frame in the window's present size, with the resolution of `detail`."""
+        """Start a frame in the window's current size, with the resolution of `detail`."""
         self.make_current()
         size = self.frame_size
         if size != self.size:

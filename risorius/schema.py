@@ -104,7 +104,7 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A rule: exactly one of these values, or of those that a function returns once.
+    """A rule: exactly one of these values; a function that returns them is called once.
 
     description: replaces a long list of values in an error.
     """
@@ -237,12 +237,12 @@ def question(name: str, known: Iterable[str]) -> str:
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """The table of a TOML file; ValueError with the reason for another text."""
+    """The table of a TOML file; raises ValueError with the reason for another text."""
     return cast(dict[str, Any], _parsed(tomllib.loads, text, "TOML"))
 
 
 def parsed_json(text: str | bytes) -> Any:
-    """The content of a JSON file; ValueError with the reason for another text."""
+    """The content of a JSON file; raises ValueError with the reason for another text."""
     return _parsed(json.loads, text, "JSON")
 
 
@@ -269,7 +269,7 @@ def _keys(record: type[Any]) -> tuple[str, ...]:
 
 
 def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> Any:
-    """A table with unknown keys moved to the `Rest` field; ValueError without such a field."""
+    """Move unknown keys of a table to the `Rest` field; raises ValueError if there is none."""
     if not isinstance(table, Mapping):
         return table
     plain = [key for key in known if not key.startswith(OWN)]

@@ -1,4 +1,4 @@
-"""The parts under the skin of a face at present, for drawing and measuring; they do not move it."""
+"""The parts under the current skin of a face, for drawing and measuring; they do not move it."""
 
 from __future__ import annotations
 

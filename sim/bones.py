@@ -16,7 +16,7 @@ class Bones:
 
     mandible_weight, head_weight: how far each vertex follows the mandible (given or guessed) and
         the head's pose (fades to 0 down the neck), 0 to 1, shape (V,).
-    jaw: present values of the jaw: open, forward, sideways. lips_closed: how far lips are now kept
+    jaw: current values of the jaw: open, forward, sideways. lips_closed: how far lips are now kept
     together over an open jaw, 0 to 1. weight: the mandible's weights for this value of lips_closed,
     shape (V,).
     """
@@ -40,7 +40,7 @@ class Bones:
         self.turn: Floats64 = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
-        """Move jaw, lips and head to the present values of the controls."""
+        """Move jaw, lips and head to the current values of the controls."""
         reached = self._controls.reached
         *values, self.lips_closed = reached[self._mouth].tolist()
         if (jaw := tuple(values)) != self.jaw:

@@ -32,7 +32,10 @@ def number(what: str, value: Any) -> float:
 
 
 def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
-    """A copy of finite numbers in C order; ValueError for another shape, named by `wanted`."""
+    """Copy finite numbers in C order; raises ValueError for another shape than `shape`.
+
+    wanted: names the shape in the error.
+    """
     wanted = wanted or str(shape)
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
     if not _fits(array, shape):
@@ -47,7 +50,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
 def vertex_numbers(
     what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
 ) -> Integers64:
-    """Numbers of vertices, a copy in rows; wanted: the allowed values, in words."""
+    """Copy vertex indices, in rows; wanted: the allowed values, in words."""
     array = _array(what, given, "fiub", wanted)
     is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no type
     if not is_whole or not _fits(array, shape):

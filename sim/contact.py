@@ -5,8 +5,9 @@ are used because a mesh may have more vertices on one lip; a vertex without a pa
 lip line jagged. A spring holds each pair together as long as nothing opens the mouth (moist lips
 stick; without the spring a smile parts them by a millimetre). The spring must be stiffer than any
 muscle, or teeth show through closed lips. So it is integrated implicitly, pair by pair, and does
-not shorten the time step. Pairs and eyeballs are also hard constraints: after each substep
-positions are projected out and the approaching part of the velocity is removed.
+not shorten the time step. Pairs and eyeballs are also hard constraints: after each substep,
+positions are projected out of the other lip and the eyeball, and the approaching part of the
+velocity is removed.
 
 Source: own; contact by projection after Müller et al. 2007, "Position based dynamics", section 3.
 Differs from it: all pairs are solved at once from one state and averaged (Jacobi), which keeps a
@@ -60,7 +61,7 @@ class LipPairs(NamedTuple):
 
 
 class Grip(NamedTuple):
-    """How firmly the lips stick together at present."""
+    """How firmly the lips stick together now."""
 
     stiffness: float  # factor of the stiffness of each pair; 0 = open
     overlap: float  # mm by which the lips are pressed into each other

@@ -110,7 +110,7 @@ class Controls:
         self.activation = self.reached[:-1]
 
     def place(self, name: str) -> int:
-        """Place of a control among `names`; for a lowest control also in `wanted` and `activation`.
+        """Index of a control in `names`; for a lowest control also in `wanted` and `activation`.
 
         Raises ValueError with similar names.
         """
@@ -136,12 +136,12 @@ class Controls:
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
-        """Places of lowest controls in `reached`; the last place if the face lacks a control."""
+        """Indices of lowest controls in `reached`; the last index if the face lacks a control."""
         none = len(self.lowest)
         return np.array([min(self._places.get(name, none), none) for name in names], np.intp)
 
     def set(self, name: str, value: float) -> None:
-        """Set one control; ValueError for an unknown name, a number not finite or beyond limits."""
+        """Set one control; raises ValueError for an unknown name or a value beyond its limits."""
         self.place(name)  # a wrong name may not even be hashable
         self.set_all({name: value})
 

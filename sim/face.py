@@ -51,13 +51,13 @@ class Simulation:
 
     controls: muscles, jaw, gaze, and the layers above.
     bones: the places of jaw and eyeballs.
-    anatomy: the present parts under the skin.
+    anatomy: the current parts under the skin.
     touch: blows and pulls on the skin.
     positions, rest_positions: vertices now and at rest [head units], shape (V, 3), read only;
         `step` rewrites the first.
     faces: triangles, shape (F, 3), read only.
     areas: skin of each vertex at rest [mm2 of the standard face], shape (V,), read only.
-    grip: how firmly the lip seal holds at present.
+    grip: how firmly the lip seal holds now.
     """
 
     def __init__(self, model: FaceModel, state: State | None = None) -> None:
@@ -90,13 +90,13 @@ class Simulation:
         self.place_targets()
 
     def clone(self) -> Simulation:
-        """Return a copy of this simulation in its present state, without pulls on its skin."""
+        """Return a copy of this simulation in its current state, without pulls on its skin."""
         clone = Simulation(self._model)
         clone.copy_from(self)
         return clone
 
     def copy_from(self, other: Simulation) -> None:
-        """Take over controls, positions and velocities of a clone; ValueError for others."""
+        """Take over controls, positions and velocities of a clone; raises ValueError for others."""
         if not isinstance(other, Simulation) or other._model is not self._model:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self.controls.copy_from(other.controls)
@@ -111,7 +111,7 @@ class Simulation:
         self._state.v[:] = 0.0
 
     def step(self, dt: float) -> None:
-        """Advance by `dt` [s], 0 < dt <= 1/20; ValueError otherwise.
+        """Advance by `dt` [s], 0 < dt <= 1/20; raises ValueError otherwise.
 
         Raises SimulationUnstable if a position is no longer finite.
         """
@@ -150,7 +150,7 @@ class Simulation:
         return bool((self._placed_for == self.controls.reached).all())
 
     def place_targets(self) -> None:
-        """Compute the spring targets from bones, lids and muscles at the present activations."""
+        """Compute the spring targets from bones, lids and muscles at the current activations."""
         model = self._model
         bones = self.bones
         state = self._state

@@ -77,7 +77,7 @@ def controls_of(head: Any) -> Controls:
 
 
 def foundation_of(head: Any) -> Foundation:
-    """Check a head, and place its bones; ValueError names the wrong attribute."""
+    """Check a head, and place its bones; raises ValueError, which names the wrong attribute."""
     vertices, faces = mesh_of("head", head)
     given = Given(*(getattr(head, name, None) for name in Given._fields))
     numbers = _landmark_numbers(given.landmarks, len(vertices))
@@ -180,7 +180,7 @@ def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
 
 
 def _landmark_numbers(given: Any, vertex_count: int) -> Integers64 | None:
-    """Return the checked vertex numbers of the 68 landmarks, None if the head has none."""
+    """Return the checked vertex indices of the 68 landmarks, None if the head has none."""
     if given is None:
         return None
     wanted = f"{LANDMARK_COUNT} vertex numbers"

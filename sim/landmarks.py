@@ -1,6 +1,6 @@
 """The 68 landmarks, and points relative to them.
 
-A rig must fit any head, so it has no vertex numbers and no world coordinates. Each of its points is
+A rig must fit any head, so it has no vertex indices and no world coordinates. Each of its points is
 relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks, plus an offset "lateral,
 up, forward" in millimetres of a head of standard size (coordinates.py).
 

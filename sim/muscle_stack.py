@@ -34,7 +34,7 @@ from .surface import SkinSurface
 
 
 def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
-    """Return the numbers of the muscles, each after the muscles that it lies on."""
+    """Return the indices of the muscles, each after the muscles that it lies on."""
     muscles = {at.muscle.name: at.muscle for at in placed}
     heights: dict[str, int] = {}
 

@@ -75,7 +75,7 @@ class PlacedMuscle:
 
     @property
     def steady(self) -> Floats64:
-        """Displacement at full activation that is linear in it [mm x weight], shape (V, 3)."""
+        """Displacement per activation of the linear terms, times weights [mm], shape (V, 3)."""
         total: Floats64 = np.sum([line.skin.steady for line in self.lines], axis=0)
         return total
 

@@ -62,7 +62,7 @@ class Pull:
         candidates: Sequence[Names],
         sight: npt.ArrayLike = (0.0, 0.0, 1.0),
     ) -> None:
-        """Begin at the present state of a face; the face itself does not change.
+        """Begin at the current state of a face; the face itself does not change.
 
         vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates: controls
         that may be used; a tuple holds controls that move together, such as both sides of a muscle.
@@ -224,7 +224,7 @@ class Pull:
         return dict.fromkeys(names, moved)
 
     def _measure(self, which: npt.ArrayLike) -> None:
-        """Slopes of the skin in controls with the given numbers, at the present values."""
+        """Slopes of the skin in controls with the given numbers, at the current values."""
         probe_share = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
             moved = self._towards(self.candidates[n], probe_share)
@@ -253,7 +253,7 @@ class Pull:
         return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:
-        """Return the linear problem at the present values."""
+        """Return the linear problem at the current values."""
         now = self._base.positions
         count = len(self._value)
         root = np.sqrt(self._share)[:, None]

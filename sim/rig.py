@@ -76,7 +76,7 @@ class _PointTable(Record):
     offset: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, 0.0, 0.0)
 
     def point(self) -> LandmarkPoint:
-        """Point of this table; ValueError for none, two, or weights that do not sum to 1."""
+        """Point of this table; raises ValueError for none, two, or weights that do not sum to 1."""
         if (self.landmark is None) == (self.landmarks is None):
             raise ValueError("give exactly one of 'landmark' and 'landmarks'")
         mix = self.landmarks or ((self.landmark or 0, 1.0),)
@@ -244,7 +244,7 @@ KINDS: dict[str, type[Muscle]] = {"linear": LinearMuscle, "ring": RingMuscle, "l
 
 
 def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
-    """Muscles with their names; ValueError if one is impossible, or cannot lie on another."""
+    """Muscles with their names; raises ValueError for an impossible muscle or `lies_on`."""
     for name, muscle in tables.items():
         if not name.isidentifier() or name != name.lower():
             raise ValueError(f"'{name}': a name is lower case letters, digits and underscores")

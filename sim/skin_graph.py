@@ -38,10 +38,10 @@ class SkinGraph:
         return sparse.csr_array(parts, shape=known.shape)
 
     def solver(self, stiffness: Floats64, diagonal: Floats64) -> Callable[[Floats64], Floats64]:
-        """Solves (diagonal + L) x = right, L the Laplacian of the edges' stiffness, for x.
+        """Return a function that solves (diagonal + L) x = right for x.
 
-        stiffness: of edges, shape (E,), 0 and above; diagonal: of vertices, shape (V,), above 0.
-        right, x: shape (V,) or (V, k).
+        L is the Laplacian whose edge weights are `stiffness`, shape (E,), 0 and above. diagonal: of
+        vertices, shape (V,), above 0. right, x: shape (V,) or (V, k).
         """
         known = self.ordered
         degrees = np.bincount(self.edges.ravel(), np.repeat(stiffness, 2), len(diagonal))

@@ -3,7 +3,7 @@
 Skin is simulated in coordinates of the cranium. The pose of the head turns the result as a whole
 about the joint with the spine. The mandible turns about the axis through both condyles and glides
 with them; skin hangs on cranium and mandible by a weight. Eyeballs turn in place. These rigid
-degrees of freedom are controls beside the muscles: no spring moves a bone. bones.py has the present
+degrees of freedom are controls beside the muscles: no spring moves a bone. bones.py has the current
 poses.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin). Differs from it: the
@@ -179,7 +179,11 @@ def turned(turn: Floats64, point: Floats64) -> Floats64:
 
 @njit
 def turn_head(condyles: Floats64, joint: Triple, angles: Triple) -> tuple[Floats64, Floats64]:
-    """Rotation and shift of the head, see head_motion; `joint`: from the condyles' middle."""
+    """Rotation (3, 3) and shift (3,) [mm] of the head about the joint with the spine.
+
+    condyles: (2, 3) [mm]; joint: offset of the joint from their midpoint [mm]; angles: to the left,
+    down, and to the right shoulder [rad].
+    """
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
     forward = (0.0, 0.0, 1.0)
     turn = times(turn, rotation(forward, angles[2]))
@@ -196,9 +200,10 @@ def move_mandible(
     angles: tuple[float, float],
     values: Triple,
 ) -> tuple[Floats64, Floats64]:
-    """Rotation and shift of the mandible (see mandible_motion); `ways`: glide [mm] for each value.
+    """Rotation (3, 3) and shift (3,) [mm] of the mandible, see `Skull.mandible_motion`.
 
-    angles: of full opening and of full sideways motion [rad].
+    condyles: (2, 3) [mm]; ways: glide at value 1 of each control [mm]; angles: at full opening and
+    at full sideways motion [rad]; values: open, forward, sideways.
     """
     right = condyles[0]
     left = condyles[1]

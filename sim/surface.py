@@ -53,7 +53,7 @@ class SkinSurface:
         return scipy.spatial.cKDTree(self.positions)
 
     def nearest(self, points: Floats64) -> Integers32:
-        """Return the number of the vertex nearest to each point (n, 3)."""
+        """Return the index of the vertex nearest to each point (n, 3)."""
         return np.asarray(self.tree.query(points)[1], dtype=np.int32)
 
     def distances_from(self, vertices: Integers64) -> Floats64:

@@ -7,7 +7,7 @@ the spine is the middle line of the part "tongue". Two controls bend it:
                  in front of it; the root comes forward, and the tongue gets longer and thinner
     tongue_up    the tip rises towards the palate, right behind the upper incisors
 
-The path lies over the present lower lip, and the gap between teeth and lips limits the tongue's
+The path lies over the current lower lip, and the gap between teeth and lips limits the tongue's
 thickness there. The tongue does not come out through a closed mouth. Each vertex keeps its place
 along the spine and turns with it.
 
@@ -50,7 +50,7 @@ class Tongue:
     def bent(self, out: float, up: float, x: Floats64, mandible: RigidMotion) -> Floats64:
         """The vertices for tongue_out and tongue_up, 0..1, shape (T, 3).
 
-        x: the skin now, shape (V, 3); mandible: its present motion.
+        x: the skin now, shape (V, 3); mandible: its current motion.
         """
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
@@ -154,7 +154,7 @@ class Tongue:
 def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> Tongue | None:
     """The tongue among a head's parts; None without teeth, landmarks, or a tongue that could bend.
 
-    parts: objects with `name` and `vertices`; landmarks: vertex numbers, shape (68,).
+    parts: objects with `name` and `vertices`; landmarks: vertex indices, shape (68,).
     """
     found = {}
     names = ("tongue", "teeth_lower", "teeth_upper")  # the tongue, and the teeth around it

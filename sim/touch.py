@@ -36,7 +36,7 @@ class Touch:
     ) -> None:
         """Hang vertices on springs until the next `drag` or `end_drag`: a finger pulls the skin.
 
-        vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
+        vertices: their indices, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError if these arguments do not fit together.
         """

@@ -63,7 +63,7 @@ class Anatomy:
         self._halves: dict[tuple[float, str], Any] = {}  # halves of parts, by the opened side
 
     def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
-        """Return the chosen structures in their present shape, and parts that do not hide them.
+        """Return the chosen structures in their current shape, and parts that do not hide them.
 
         Without structures, only hair, glasses and a mask cast shadows. Light passes through
         translucent skin, so all solid parts cast shadows there.
@@ -142,7 +142,7 @@ class Anatomy:
         return [self._half(face, part, side) for part in parts]
 
     def _half(self, face: Face, part: Any, side: float) -> Any:
-        """Return the half of a part that is not on `side`, in its present shape."""
+        """Return the half of a part that is not on `side`, in its current shape."""
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
             self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
@@ -154,7 +154,7 @@ class Anatomy:
         return half
 
     def _openings(self) -> dict[str, render.Opening]:
-        """Return the present openings of the skin by name."""
+        """Return the current openings of the skin by name."""
         rims = self._scene.rims(render.Opening.RIM_POINTS)
         return {name: render.Opening(*rim) for name, rim in rims.items()}
 

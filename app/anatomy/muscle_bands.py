@@ -65,7 +65,7 @@ class Muscles:
 
     @classmethod
     def of(cls, face: Face) -> Muscles:
-        """Make the muscles of a face in their present state."""
+        """Make the muscles of a face in their current state."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         made._build(face)
@@ -155,7 +155,7 @@ class Muscles:
         self._shift = rails + self._below * self._facing - x
 
     def _moved(self, face: Face) -> tuple[Floats64, Floats64]:
-        """Return present edges and middles of all bands, and outward directions, (3, b, ROWS, 3).
+        """Return current edges and middles of all bands, and outward directions, (3, b, ROWS, 3).
 
         A band's origin moves with its bone, and its insertion with the skin.
         """
@@ -186,7 +186,7 @@ class Muscles:
         return found[..., :3], unit_vectors(found[..., 3:])
 
     def follow(self, face: Face) -> None:
-        """Update shape and colours from the face's present state."""
+        """Update shape and colours from the face's current state."""
         rails, normal = self._moved(face)
         swollen = np.clip(self._length / _lengths(rails[1]), 0.75, 2.2)
         swollen = 1.0 + (swollen[:, None] - 1.0) * ARCH

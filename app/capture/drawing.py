@@ -152,7 +152,7 @@ class Capture:
         self.surface.__exit__(*error)
 
     def draw_image(self) -> Image:
-        """Draw the present scene, and read the picture back; (H, W, 4) if transparent."""
+        """Draw the current scene, and read the picture back; (H, W, 4) if transparent."""
         options = self.options
         style = self.options.style
         self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
@@ -195,7 +195,7 @@ class Capture:
         return False
 
     def next_frame(self) -> Frame:
-        """Return the frame of the present scene, or the last frame again if the scene is still."""
+        """Return the frame of the current scene, or the last frame again if the scene is still."""
         if self.is_still() and self._frame is not None:
             self.refine()
         else:
@@ -203,7 +203,7 @@ class Capture:
         return self._frame
 
     def draw_frame(self) -> Frame:
-        """Draw the present scene, with the labels and passes of the picture."""
+        """Draw the current scene, with the labels and passes of the picture."""
         image = self.draw_image()
         known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)

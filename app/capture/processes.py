@@ -24,7 +24,7 @@ from .drawing import Capture, CaptureOptions, Frame
 
 @dataclass(frozen=True)
 class Share:
-    """The frames of one process: number `first`, and then each `every`-th, up to `until` [s]."""
+    """The frames that one process draws: first, first + every, ..., up to the time `until` [s]."""
 
     script: Script
     options: CaptureOptions

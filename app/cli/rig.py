@@ -77,7 +77,8 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: a mesh with the same vertices, and with named shapes.
 
     HEAD is a file, or the number or name of a person; by default it is the built-in head. Lines on
-    the error stream report the role of each piece of the file, and errors of combined shapes.
+    the error stream report the role of each piece of the file, and how far sums of shapes differ
+    from the simulation.
     """
     from ..rig.avatar import RigRequest, avatar_of
     from ..rig.writing import write_avatar

@@ -27,7 +27,7 @@ def labels_of_face(
     depth: Any,
     covered: Any = None,
 ) -> dict[str, Any]:
-    """Return all labels of a face in its present state.
+    """Return all labels of a face in its current state.
 
     size: width and height of the picture [pixels]. depth: depth map of the picture, (H, W).
     covered: flags of pixels where a mask hides landmarks, (H, W); None: no mask.

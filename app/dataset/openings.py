@@ -23,7 +23,7 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
     """Return the openings of mouth and eyes, seen along z: name -> height [mm].
 
-    positions: vertices [mm], (V, 3). triangles: (F, 3). landmarks: present positions [mm], (68, 3).
+    positions: vertices [mm], (V, 3). triangles: (F, 3). landmarks: current positions [mm], (68, 3).
     """
     found = {}
     for name, numbers in LOWER_EDGES.items():

@@ -1,4 +1,4 @@
-"""Draw the random numbers that describe sample n of a seed.
+"""Choose the random values that describe sample n of a seed.
 
     table, seed, n  ->  Sample: expression, head, eyes, camera, person, light
 
@@ -70,7 +70,7 @@ class Sample:
 
 
 def draw(table: SampleTable, seed: int, index: int) -> Sample:
-    """Draw sample number `index` of a seed."""
+    """Choose the random values of sample number `index` of a seed."""
     streams = np.random.SeedSequence([seed, index]).spawn(6)
     faces, sides, heads, cameras, looks, faults = map(np.random.default_rng, streams)
     kind = chosen(faces, table.kinds)

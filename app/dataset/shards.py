@@ -51,7 +51,7 @@ class Shard:
 
 
 def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Yield the name, as in the folder, and the content of each readable file in a tar file."""
+    """Yield each readable file in a tar file: its name outside of the shard, and its content."""
     with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
         yield from _files_in(file)
 

@@ -110,7 +110,7 @@ class Studio:
     def _picture(
         self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
-        """Draw the present scene; return the picture, and the labels of light and background."""
+        """Draw the current scene; return the picture, and the labels of light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         lit = light_of(sample.light, request.lights, random)
@@ -194,7 +194,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """Return a camera that centres the present head of a scene, and is then moved by a shift.
+    """Return a camera that centres the current head of a scene, and is then moved by a shift.
 
     If landmarks would lie outside the picture of `size` pixels, the camera moves again.
     """

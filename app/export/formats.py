@@ -108,7 +108,7 @@ FORMATS = (
 
 
 def format_for(output: Path, name: str | None) -> Format:
-    """Return the format of an output by its name or by `--as`; UserError if there is none."""
+    """Return the format of an output by its name or `--as`; raises UserError if there is none."""
     suffix = output.suffix.lower()
     known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
     for each in FORMATS:

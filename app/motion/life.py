@@ -188,7 +188,7 @@ class Idle:
 def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     """Return values of gaze and head with which a face looks at a point [mm], shape (3,).
 
-    The eyes compensate for the present turn of the head. Values are grouped as in `Life.parts`.
+    The eyes compensate for the current turn of the head. Values are grouped as in `Life.parts`.
     """
     centres = {eye.name: np.asarray(eye.centre) for eye in face.head.eyes}
     if not centres:

@@ -45,7 +45,7 @@ def labels_of(
     depth: Floats32 | None = None,
     covered: Flags | None = None,
 ) -> dict[str, Any]:
-    """Return the labels of a picture of the present scene, `size` pixels large.
+    """Return the labels of a picture of the current scene, `size` pixels large.
 
     depth: depth map of the picture, (H, W), for landmarks; None leaves landmarks out. covered:
     flags of pixels where a mask hides landmarks, (H, W); None: no mask. `docs/passes.md` describes

@@ -1,7 +1,8 @@
 """The landmarks of one picture, at the places where annotators of photographs put them.
 
-The points of the jaw lie on the outline of the face that this camera sees; `assets.annotation` has
-the lines on which it is searched. The points of the jaw on the bone come from the rig.
+The points of the jaw lie on the outline of the face that this camera sees. The outline is searched
+along lines of `assets.annotation`. Points that stay on the jaw bone are returned separately
+(`jaw_on_bone`).
 """
 
 from __future__ import annotations

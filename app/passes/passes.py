@@ -2,7 +2,7 @@
 
     depth         distance along the camera's axis [mm], 0 = nothing            (H, W) float32
     normal        unit normal, x right, y down, z away from the camera          (H, W, 3) float32
-    triangle      number in the simulated mesh, -1 = nothing, an eye, ...       (H, W) int32
+    triangle      index in the simulated mesh, -1 = nothing, an eye, ...       (H, W) int32
     splits        number of splits of that triangle's edges                     (H, W) uint8
     segmentation  class, by the numbers of FaceSynthetics (assets.Segment)      (H, W) uint8
 

@@ -26,7 +26,7 @@ class Body(Protocol):
 
     name: unique within the avatar.
     rest: vertices at rest [mm], (V, 3).
-    faces: vertex numbers, (F, 3).
+    faces: vertex indices, (F, 3).
     """
 
     @property

@@ -40,8 +40,8 @@ class FileBody:
     """A body with all vertices of a file [mm], in the file's order.
 
     pivots: bone of an eyeball -> centre of the eyeball [mm], (3,).
-    in_bag, between_lids: numbers of the vertices behind the lips, and in eyes that are part of the
-    skin, that are not simulated, (n,) and (m,).
+    in_bag: indices of the vertices behind the lips that are not simulated, (n,).
+    between_lids: indices of such vertices in eyes that are part of the skin, (m,).
     """
 
     name = "head"
@@ -204,7 +204,7 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
-    """Return, for each vertex of a file, its number in the skin, or -1, (V,)."""
+    """Return, for each vertex of a file, its index in the skin, or -1, (V,)."""
     place = np.full(len(same), -1, np.int64)
     place[head.file_vertices] = np.arange(len(head.file_vertices))
     return np.where(place >= 0, place, place[same])

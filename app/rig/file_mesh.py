@@ -36,7 +36,7 @@ SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex numb
 class SplitVertices:
     """The n glTF vertices of a file; the first V are the vertices of the file.
 
-    vertex: vertex number in the file, (n,).
+    vertex: vertex index in the file, (n,).
     uv: row of the texture coordinates, or -1, (n,).
     normal: row of the normal, or -1, (n,).
     corners: glTF vertices of the triangles, (F, 3).

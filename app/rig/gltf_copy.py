@@ -104,7 +104,7 @@ class GltfShapes:
     ) -> None:
         """Add the shapes to all meshes that they move.
 
-        pieces: meshes of the file. vertices: vertex numbers of each piece, see `vertices_of`.
+        pieces: meshes of the file. vertices: vertex indices of each piece, see `vertices_of`.
         names: names of the shapes. extras: added to the extras of these meshes.
         """
         changes: dict[int, dict[int, _Changes]] = {}

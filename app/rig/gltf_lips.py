@@ -19,7 +19,7 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
 
 def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
-    """Return the vertex numbers of each piece in the mesh; those that a cut adds come last."""
+    """Return the vertex indices of each piece in the mesh; those that a cut adds come last."""
     found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)
@@ -42,7 +42,7 @@ def cut_primitives(
 ) -> None:
     """Double the vertices of the primitives that a cut crosses.
 
-    file: the file from which `glb` was made. vertices: vertex numbers of each piece, see
+    file: the file from which `glb` was made. vertices: vertex indices of each piece, see
     `vertices_of`.
     """
     done = set()

@@ -46,7 +46,7 @@ class FilePiece:
     """Connected vertices of a file, with a role.
 
     number: number of the piece in options.
-    vertices: vertex numbers in the file, (n,).
+    vertices: vertex indices in the file, (n,).
     role: one of ROLES.
     middle: centre of the bounding box [mm], (3,).
     name: name of the object or group in the file, or "".
@@ -70,7 +70,7 @@ def find_pieces(
 
     rest: all vertices of the file [mm], (V, 3).
     faces: all triangles, (F, 3).
-    skin: vertex numbers of the skin.
+    skin: vertex indices of the skin.
     names: name of the object or group of each vertex, (V,).
     """
     piece = pieces_of(faces, len(rest))

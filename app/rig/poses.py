@@ -37,7 +37,7 @@ class Pose:
 
 
 def pose_of(scene: FaceScene) -> Pose:
-    """Return the present pose of a scene."""
+    """Return the current pose of a scene."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM])
     weights = scene.face.head_weight

@@ -29,8 +29,8 @@ MANDIBLE = "mandible"  # name of a bone
 class Skeleton:
     """The nodes of the bones that carry surfaces.
 
-    roots: numbers of the nodes without a parent.
-    skin: number of a face's glTF skin; None for a scene without a face.
+    roots: indices of the nodes without a parent.
+    skin: index of a face's glTF skin; None for a scene without a face.
     """
 
     def __init__(

@@ -20,7 +20,7 @@ class MovingSurface:
 
     name: "skin", or the name of the part; unique within the clip.
     rest: vertices at rest, (V, 3), float64.
-    faces: vertex numbers, counter-clockwise from the visible side, (F, 3), int32.
+    faces: vertex indices, counter-clockwise from the visible side, (F, 3), int32.
     shapes: vertices in each frame, before `matrices`, (N, V, 3), float32; None: always `rest`.
     matrices: motion of the whole surface in each frame, (N, 4, 4), float64; None: no motion.
     uv: texture coordinates, (U, 2).
@@ -49,7 +49,7 @@ class MovingSurface:
     def normals_of(self, points: Floats64, frame: int | None) -> Floats64:
         """Return unit normals (V, 3) for the vertex positions `points` (V, 3) in a frame.
 
-        frame: number of the frame; None for the surface at rest.
+        frame: index of the frame; None for the surface at rest.
         """
         return vertex_normals(points, self.faces)
 

@@ -82,7 +82,7 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
 
 
 def build_face(head: FittedHead | None = None) -> FaceScene:
-    """Build a face, by default of the built-in head; UserError if it cannot be simulated."""
+    """Build a face, by default of the built-in head; raises UserError if it cannot be simulated."""
     try:
         return FaceScene(head)
     except ValueError as error:
@@ -98,10 +98,10 @@ def own_head(head: Path, landmarks: Path | None) -> FittedHead:
 
 
 def called_head(who: int | str) -> FittedHead:
-    """Return the person with a number or a name, or the coarse head."""
+    """Return a person, given by number or name, or the coarse head."""
     return coarse_head() if who == COARSE else person_called(who)
 
 
 def head_in_words(who: int | str) -> str:
-    """Describe the head with a number or a name, for lists."""
+    """Describe a head, given by its number or name, for lists."""
     return "Coarse head" if who == COARSE else person_in_words(who)

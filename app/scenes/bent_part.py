@@ -14,7 +14,7 @@ from risorius.geometry.read_only import read_only
 
 
 class FaceNow(NamedTuple):
-    """The present shape of a face, for its parts.
+    """The current shape of a face, for its parts.
 
     skin: the vertices [mm], (V, 3). bones: the motion of each bone, name -> a matrix (4, 4). jaw:
     values of the jaw; all 0 at rest. tongue: the vertices of the tongue, (n, 3), in the space of
@@ -54,7 +54,7 @@ class BentPart:
     roots: None = None
 
     def follow(self, now: FaceNow) -> None:
-        """Take the shape for the present face, relative to the part's bone."""
+        """Take the shape for the current face, relative to the part's bone."""
         raise NotImplementedError
 
     def take_shape(self, vertices: Floats64) -> None:

@@ -55,7 +55,7 @@ class DenseSkin:
 
     @property
     def positions(self) -> Floats64:
-        """Present positions [mm], shape (V, 3), read only; always the same view."""
+        """Current positions [mm], shape (V, 3), read only; always the same view."""
         if self._wanted is not None:
             moved = self._embedding.evaluate(self._wanted, with_normals=False).positions
             self._positions[:] = moved

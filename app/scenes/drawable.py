@@ -26,7 +26,7 @@ Pixels = npt.NDArray[np.uint8]
 class SkinImages:
     """The images on a mesh, its texture coordinates, and the fade at its end.
 
-    uv: texture coordinates, (U, 2). face_uv: number of the coordinates at each corner, (F, 3).
+    uv: texture coordinates, (U, 2). face_uv: row of `uv` at each corner, (F, 3).
     albedo: sRGB, (H, W, 3). in_tone: makes the albedo for an individual typology angle [deg].
     ambient_occlusion: factor on the light, (H, W); None: no occlusion.
     fine_shape: form of the skin beyond its triangles. wrinkles: the furrows of the skin.
@@ -88,7 +88,7 @@ class Drawable:
 
     @property
     def positions(self) -> Points:
-        """The present vertices [mm], shape (V, 3), read only."""
+        """The current vertices [mm], shape (V, 3), read only."""
         return self._positions_now
 
     def place(self, positions: Points) -> None:
@@ -97,18 +97,18 @@ class Drawable:
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """The present parts that move with bones or the skin: eyes, teeth, lashes, ..."""
+        """The parts that move with bones or the skin, in their current shape: eyes, teeth, ..."""
         return ()
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:
-        """Return the present openings of the skin, by the names in `openings.opening_before`.
+        """Return the current openings of the skin, by the names in `openings.opening_before`.
 
         point_count: even number of points of each rim.
         """
         return {}
 
     def bone_transforms(self) -> Mapping[str, Points]:
-        """Return the present place of each bone, a matrix (4, 4); rigid parts move with bones."""
+        """Return the current place of each bone, a matrix (4, 4); rigid parts move with bones."""
         return {}
 
     def step(self, seconds: float) -> None:

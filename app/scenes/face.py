@@ -103,7 +103,7 @@ class FaceScene(Scene):
 
     @property
     def parts(self) -> tuple[Any, ...]:
-        """The parts in their present shape; computed here, because pictures skip some steps."""
+        """The parts in their current shape; computed here, because pictures skip some steps."""
         if not self._are_bent:
             self._are_bent = True
             jaw = self.simulation.bones.jaw

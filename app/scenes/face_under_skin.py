@@ -31,7 +31,7 @@ class Face:
 
     @classmethod
     def of(cls, head: assets.Head | FittedHead) -> Face:
-        """Make a face of this head at rest; ValueError for a head that cannot be simulated."""
+        """Make a face of this head at rest; raises ValueError if it cannot be simulated."""
         simplified = head.simplified if isinstance(head, FittedHead) else None
         simulation = sim.create(simplified or head)
         if simplified is None:
@@ -69,7 +69,7 @@ class Face:
 
     @property
     def positions(self) -> Floats64:
-        """The present vertices of the skin [mm], shape (V, 3); always the same view.
+        """The current vertices of the skin [mm], shape (V, 3); always the same view.
 
         A dense skin is computed at this read.
         """
@@ -84,7 +84,7 @@ class Face:
 
     @property
     def marked(self) -> Floats64:
-        """The present places of the rig's 68 landmarks [mm], shape (68, 3)."""
+        """The current places of the rig's 68 landmarks [mm], shape (68, 3)."""
         return np.asarray(self.positions[self.head.landmarks])
 
     @cached_property
@@ -93,10 +93,10 @@ class Face:
         return annotation_of(self.head)
 
     def follow(self) -> None:
-        """Let a dense skin follow the present simulated mesh."""
+        """Let a dense skin follow the current simulated mesh."""
         if self.dense_skin is not None:
             self.dense_skin.follow(self.simulation.positions)
 
     def bone_transforms(self) -> Mapping[str, Floats64]:
-        """Return the present place of each bone, a matrix (4, 4)."""
+        """Return the current place of each bone, a matrix (4, 4)."""
         return self.simulation.bones.transforms()

@@ -1,4 +1,4 @@
-"""The present openings of a face between the lids and between the lips.
+"""The current openings of a face between the lids and between the lips.
 
 Light passes through an opening to an eyeball or into the mouth. Rims run through the rig's
 landmarks: the rim of a lid is the cubic curve through its four landmarks.
@@ -30,7 +30,7 @@ class Rim(NamedTuple):
 
 
 def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
-    """Return the openings by the eyeballs' bones and "mouth", from present landmarks (68, 3).
+    """Return the openings by the eyeballs' bones and "mouth", from current landmarks (68, 3).
 
     point_count: even number of points of each rim.
     """

@@ -12,7 +12,7 @@ from .drawable import Drawable, Framing
 class Scene(Drawable):
     """A mesh whose vertices are moved by controls.
 
-    groups: heading of a panel -> controls. values: the set value of each control.
+    groups: heading of a panel -> controls. values: the current value of each control.
     actions: control -> its effect in words, if known. expressions: controls that show a whole face.
     """
 

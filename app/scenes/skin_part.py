@@ -53,7 +53,7 @@ class SkinPart(BentPart):
         )
 
     def follow(self, now: FaceNow) -> None:
-        """Follow the present skin."""
+        """Follow the current skin."""
         moved = self._embedding.evaluate(now.skin_on(self.bone, self._near))
         assert moved.normals is not None
         self.vertices = read_only(moved.positions.astype(np.float32))

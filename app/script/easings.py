@@ -22,7 +22,7 @@ STEEPEST_TENTHS = 30  # largest slope, in tenths of the mean speed
 
 
 class Easing(NamedTuple):
-    """The slopes at the previous and the present key, in tenths of the mean speed; or a hold."""
+    """The slopes at the previous and the current key, in tenths of the mean speed; or a hold."""
 
     start: int
     end: int

@@ -55,7 +55,10 @@ class Places(Set[KeyPlace]):
         return min(float(each[0]) for each in self.times.values())
 
     def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
-        """Return the latest key time [s] of these tracks in each interval of `edges` with keys."""
+        """Return the latest key time [s] in each interval of `edges`; omit intervals without keys.
+
+        names: tracks whose keys count.
+        """
         latest = np.full(len(edges) - 1, -np.inf)
         for times in (self.times[name] for name in names if name in self.times):
             after = np.searchsorted(times, edges)

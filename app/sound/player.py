@@ -1,4 +1,4 @@
-"""Playback of sound on a device, and the time in the sound that is heard at present.
+"""Playback of sound on a device, and the time in the sound that is heard now.
 
 The library is miniaudio: MIT licence, wheels of half a megabyte for Linux, macOS and Windows and
 each supported Python, and no further packages (sounddevice needs PortAudio on Linux, pygame and
@@ -69,7 +69,7 @@ class Player:
 
     @property
     def position(self) -> float:
-        """The present time in the sound [s]; the clock interpolates between two requests."""
+        """The current time in the sound [s]; the clock interpolates between two requests."""
         part = self._part
         (when, asked_for, given) = self._asked
         if part is None or asked_for is not part:
@@ -93,7 +93,7 @@ class Player:
         return part is not None and self.position < part.end and not self.is_stuck
 
     def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
-        """Play from a time of the sound [s] on, in place of the present part.
+        """Play from a time of the sound [s] on, in place of the current part.
 
         speed: a speed other than 1 also changes the pitch. seconds: longest duration.
         """

@@ -49,7 +49,7 @@ class Filling:
 def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
     """Find all triangles that fill the mouth or an eye of a mesh; None if there are none.
 
-    numbers: vertex numbers of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
+    numbers: vertex indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     to_face = placed(landmarks, load("head"))
     vertices = to_face.points(mesh.vertices)

@@ -76,7 +76,7 @@ class FittedHead(simplifying.SimulatedHead):
     such as eyeballs and teeth, are left out.
 
     to_millimetres: similarity from the file's coordinates to the face space.
-    file_vertices: for each vertex the number of the nearest vertex in the file, (V,), int32.
+    file_vertices: for each vertex the index of the nearest vertex in the file, (V,), int32.
     notes: changes of the mesh that the user should know, one line for each.
     called: name or number of the head; "" if it has none.
     simplified: simulated mesh of a head with too many triangles; None for other heads.
@@ -196,7 +196,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
 def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
-    landmarks: vertex numbers, (68,). points: exact positions [unit of the mesh], (68, 3); None for
+    landmarks: vertex indices, (68,). points: exact positions [unit of the mesh], (68, 3); None for
     the positions of the vertices. Raises AssetError for an unusable mesh.
     """
     known = load("head")

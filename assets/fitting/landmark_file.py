@@ -1,8 +1,8 @@
 """Read and write the file with the 68 landmarks of a head, and check their order.
 
-The file is JSON and holds vertex numbers or coordinates.
+The file is JSON and holds vertex indices or coordinates.
 
-    {"landmarks": [1225, 1888, ...]}              vertex numbers, counted from 0
+    {"landmarks": [1225, 1888, ...]}              vertex indices, counted from 0
     {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in the mesh's unit
 
 The key may have any name, other keys are ignored, and a list without a key suffices. In an
@@ -48,13 +48,13 @@ OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
 
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
-    """Read landmarks: vertex numbers (68,), int32, and points (68, 3) [unit of the mesh] or None.
+    """Read landmarks: vertex indices (68,), int32, and points (68, 3) [unit of the mesh] or None.
 
     If the file holds points, the numbers are those of the nearest vertices. If it holds numbers,
     the points are None.
 
     Raises AssetError for a file that is missing, too long or not JSON, for another number of
-    landmarks, for a vertex number out of range, and for a point off the mesh.
+    landmarks, for a vertex index out of range, and for a point off the mesh.
     """
     try:
         found = _all_in(_document(path))

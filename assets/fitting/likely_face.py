@@ -36,9 +36,9 @@ class LikelyFace:
     head: the built-in head, which has the topology of all persons.
     mesh: vertices of the mesh in the person's space [mm], (V, 3).
     faces: triangles of the mesh's skin, (F, 3).
-    numbers: numbers of the n known landmarks.
+    numbers: indices of the n known landmarks.
     given: points of the known landmarks [mm], (n, 3).
-    skin: numbers of the person's vertices that are fitted to the mesh, (m,).
+    skin: indices of the person's vertices that are fitted to the mesh, (m,).
     moved: all motion of the mesh so far.
     """
 

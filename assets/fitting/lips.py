@@ -60,8 +60,8 @@ class LipCut:
     sources: the file's vertices that are doubled, (n,). The new vertices come after the last vertex
         of the file.
     below: triangles of the lower lip at the cut, which get the new vertices, (k, 3). Each row holds
-        vertex numbers of the file in rising order.
-    landmarks: vertex numbers of the landmarks in the cut mesh, (68,).
+        vertex indices of the file in rising order.
+    landmarks: vertex indices of the landmarks in the cut mesh, (68,).
     points: points of the landmarks [unit of the mesh], (68, 3).
     """
 
@@ -114,7 +114,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
     """Find the cut between joined lips.
 
     Returns None if the lips are apart, or if no path of edges runs between them. numbers: vertex
-    numbers of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
+    indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     line = lips_line(landmarks)
     gaps = landmarks[list(UPPER_LIP)] - landmarks[list(LOWER_LIP)]
@@ -154,7 +154,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """Find a path of edges along a line (n, 3): vertex numbers; None if no path joins its ends."""
+    """Find a path of edges along a line (n, 3): vertex indices; None if no path joins its ends."""
     used = np.unique(mesh.faces)
     ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
     edges = edges_of(mesh.faces)

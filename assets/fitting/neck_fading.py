@@ -15,7 +15,7 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     could only be seen through the neck, not through the mouth. Both columns belong to vertices, so
     a chin that moves down beside a short neck stays visible.
 
-    vertices: at rest [mm], (V, 3). landmarks: vertex numbers, (68,). Returns None if the mesh has
+    vertices: at rest [mm], (V, 3). landmarks: vertex indices, (68,). Returns None if the mesh has
     no edge at the neck.
     """
     chin_landmark = 8

@@ -236,7 +236,7 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
     """Return the texture of some triangles, and their layout; None if they have no texture.
 
     Several textures are put side by side into one. Triangles without a texture get the mean colour.
-    faces: numbers of the triangles, (F,). turned: whether to reverse the corners of each triangle.
+    faces: indices of the triangles, (F,). turned: whether to reverse the corners of each triangle.
     """
     import PIL.Image  # here, because most heads do not need it
 

@@ -5,7 +5,7 @@ of these edges. The numbers may be those of a whole file or of one piece, so eye
 objects may be missing. topologies.toml has the included topologies. Users add others in JSON files,
 each with one topology:
 
-    {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex numbers]}
+    {"name": "FLAME", "counts": [[5023, 9976]], "landmarks": [68 vertex indices]}
 
 The built-in head, whose topology all persons have, and the coarse head are recognised, too.
 """
@@ -43,8 +43,8 @@ class Topology(Record):
     """A known topology.
 
     counts: pairs of the numbers of vertices and of triangles, in a whole file or in one piece.
-    landmarks: 68 vertex numbers from 0, in the file or in the piece.
-    edges: two vertex numbers, and their distance divided by the distance of the outer eye corners.
+    landmarks: 68 vertex indices from 0, in the file or in the piece.
+    edges: two vertex indices, and their distance divided by the distance of the outer eye corners.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Topology(Record):
     edges: list[tuple[Number, Number, float]] = field(default_factory=list)
 
     def check(self, where: str) -> None:
-        """Raise AssetError unless there are 68 landmarks, and all vertex numbers are in range."""
+        """Raise AssetError unless there are 68 landmarks, and all vertex indices are in range."""
         fewest = min((vertices for vertices, _ in self.counts), default=0)
         if len(self.landmarks) != COUNT:
             raise AssetError(
@@ -74,7 +74,7 @@ class Topology(Record):
 
 @dataclass(frozen=True)
 class KnownHead:
-    """A topology that was recognised in a mesh; landmarks: vertex numbers of the mesh, (68,)."""
+    """A topology that was recognised in a mesh; landmarks: vertex indices of the mesh, (68,)."""
 
     name: str
     landmarks: Integers32

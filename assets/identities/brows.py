@@ -48,7 +48,7 @@ class Brows:
 
 
 def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brows:
-    """Draw random brows for a sex and an age."""
+    """Choose random brows for a person of this sex and age [years]."""
     # For women, then for men: means and standard deviations of thickness, inner end, rise, fall,
     # peak and density.
     drawn = (

@@ -49,7 +49,7 @@ USUAL_IRIS = Iris()
 def drawn_iris(
     years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
 ) -> Iris:
-    """Draw random irises for an age and a skin tone.
+    """Choose random irises for a person of this age [years] and skin tone.
 
     chance: random number, 0 to 1, that decides edge and fibres. angle: ITA [deg].
     """

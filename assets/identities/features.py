@@ -47,7 +47,7 @@ PLAIN = Features()
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Draw random features for an identity's sex and age and for a skin tone (ITA [deg]).
+    """Choose random features for an identity's sex and age, and a skin tone, ITA [deg].
 
     In women, eyes and lips contrast more with the skin than in men (Russell 2009, "A sex difference
     in facial contrast and its exaggeration by cosmetics", Perception 38:1211-1219). The contrast

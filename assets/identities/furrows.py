@@ -1,4 +1,4 @@
-"""Draw courses and depths of a person's lines: on the forehead, between brows, beside the eyes.
+"""Choose random courses and depths of a person's lines: forehead, between brows, beside eyes.
 
 Lines run perpendicular to the pull of muscles (Kraissl 1951): horizontally on the forehead, upright
 between the brows, as a fan beside the eye. The course and the depth of a line are functions of a
@@ -45,7 +45,7 @@ class Line(NamedTuple):
 
 
 def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Draw the lines of the forehead; some are broken into two halves of unequal height."""
+    """Choose random lines of the forehead; some are broken into two halves of unequal height."""
     x = _samples(FOREHEAD_REACH)
     lowest, highest = 36.5, 70.0  # [mm] above the root of the nose, along the skin
     spacing = (highest - lowest) / lines.forehead
@@ -100,7 +100,7 @@ def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Flo
 
 
 def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Draw the upright lines between the brows, which diverge upward."""
+    """Choose random upright lines between the brows, which diverge upward."""
     y = _samples(GLABELLA_REACH)
     places = {1: (0.0,), 2: (-5.6, 5.6), 3: (-7.2, 0.4, 6.8)}[lines.frown]
     deepest = random.integers(len(places))
@@ -120,7 +120,7 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 
 
 def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
-    """Draw the crow's feet of one side; some of them fork."""
+    """Choose random crow's feet of one side; some of them fork."""
     radius = _samples(FEET_REACH)
     low, high = FANS[lines.fan]
     wide = (high - low) / lines.feet

@@ -118,7 +118,7 @@ class Hairline:
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
-    """Draw a random hairline for a sex and an age.
+    """Choose a random hairline for a person of this sex and age [years].
 
     Straight, round and M-shaped hairlines are as frequent as among 456 persons: 43, 39 and 18 % of
     women, 46, 11 and 43 % of men. The hairline of men lies 4.5 mm higher. Source: Kashiyama and
@@ -143,7 +143,7 @@ class Scalp(NamedTuple):
 
     points: vertices [mm], (n, 3).
     normals: unit normals of the vertices, (n, 3).
-    faces: vertex numbers, (m, 3).
+    faces: vertex indices, (m, 3).
     behind: distances of the vertices behind the hairline [mm], (n,).
     covers: least heights of hair above the vertices [mm], (n,). At this height, coarse triangles
         of concave skin do not hide the hair.

@@ -1,4 +1,4 @@
-"""Draw the expression lines of a person: their number, length and depth.
+"""Choose the expression lines of a person at random: their number, length and depth.
 
 - Forehead: lines cross the whole forehead in 51 % of people, only its centre in 25 %, and only its
   sides in 24 % (Braz, Sakuma 2010, "Frontalis muscle contraction patterns", Surg. Cosmet.
@@ -73,7 +73,7 @@ class Lines(NamedTuple):
 
 
 def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
-    """Draw random lines for a sex and an age [years]."""
+    """Choose random lines for a person of this sex and age [years]."""
     seed = int(random.integers(2**31))
     spread, frown, fan, dip, broken, uneven, reach = random.uniform(0.0, 1.0, 7).tolist()
     count, feet, *deep = np.clip(random.normal(size=6), -2.0, 2.0).tolist()

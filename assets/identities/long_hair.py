@@ -39,7 +39,7 @@ def falling_hair(
 ) -> tuple[Part, ...]:
     """Make the parts that are drawn as long loose hair, the inner side first.
 
-    head: has vertices (V, 3) [mm] and anatomy (names -> vertex numbers). colour: sRGB, (3,).
+    head: has vertices (V, 3) [mm] and anatomy (names -> vertex indices). colour: sRGB, (3,).
     length: factor on the distance from the ears to the tips.
     """
     vertices = head.vertices

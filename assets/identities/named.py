@@ -1,4 +1,4 @@
-"""Make persons with a number or a name, in their own colours."""
+"""Make persons, given by number or name, in their own colours."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -53,7 +53,7 @@ def own_colours(
     irises: str | None = None,
     population: Population = EVERYBODY,
 ) -> Colours:
-    """Draw the colours of a person's number; a number always gives the same colours.
+    """Choose random colours for a person's number; a number always gives the same colours.
 
     All tones of the population are equally likely. angle (ITA [deg]), irises: replace drawn ones.
     """
@@ -86,14 +86,14 @@ def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
 
 @cache
 def person_in_words(who: int | str) -> str:
-    """Describe the person with a number or a name, such as "Person 7, woman, about 60"."""
+    """Describe a person, given by number or name, such as "Person 7, woman, about 60"."""
     known = sample_identity(who) if isinstance(who, int) else NAMED[who]
     name = f"Person {who}" if isinstance(who, int) else who.capitalize()
     return f"{name}, {known.sex.value}, about {5 * round(known.age / 5.0)}"
 
 
 def person_called(who: int | str) -> Person:
-    """Make the person with a number (0 or more) or a name of `NAMED`, in the person's own colours.
+    """Make a person, given by number (0 or more) or by a name of `NAMED`, in the person's colours.
 
     Raises KeyError for other names.
     """

@@ -74,7 +74,7 @@ EVERYBODY = Population()
 def drawn_irises(
     random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
 ) -> str:
-    """Draw a random colour of eyes for a skin tone; angle: ITA [deg].
+    """Choose a random colour of eyes for a skin tone; angle: ITA [deg].
 
     shares: frequencies with very light skin. With darker skin, green, blue and grey eyes become
     rare first, then hazel eyes.

@@ -37,7 +37,7 @@ CANINE_SHARE = 0.33
 
 
 def drawn_smile(is_woman: bool, random: np.random.Generator) -> Smile:
-    """Draw a random smile for a sex."""
+    """Choose a random smile for a person of this sex."""
     kind, strength, *others = random.uniform(0.0, 1.0, 5)
     strength *= 1.0 if is_woman else 0.8
     lift = 0.5 + 0.5 * strength if kind < CANINE_SHARE else 0.25 * strength

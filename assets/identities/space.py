@@ -148,7 +148,7 @@ class PersonSpace:
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
-        """Draw random weights, (k,), for a sex and an age [years]."""
+        """Choose random weights, (k,), for a person of this sex and age [years]."""
         chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
@@ -231,7 +231,7 @@ def sample_identity(
     is_even: bool = False,
     population: Population = EVERYBODY,
 ) -> Identity:
-    """Draw the identity of a person's number; a number always gives the same identity.
+    """Choose a random identity for a person's number; a number always gives the same identity.
 
     - seed: number of the person, 0 or more.
     - sex, age: replace the drawn sex and the drawn age [years].

@@ -64,7 +64,7 @@ class Displacement(Measuring):
         self.turning = turning
 
     def set_scheme(self, scheme: Scheme) -> None:
-        """Take the scheme of the refiner; raises ValueError for a scheme that does not measure."""
+        """Take the scheme of the refiner; raises ValueError for a scheme without `measure`."""
         if not scheme.measures:
             raise ValueError(
                 'criterion "displacement" needs a scheme that measures how far it moves edges; '

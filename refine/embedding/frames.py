@@ -132,7 +132,7 @@ def unit_of(v: Vector) -> Vector:
 def find_axes(first: int, last: int, positions: Floats64, fans: SectorFans, axes: Floats64) -> None:
     """Write the axes of sectors, shape (S, 16).
 
-    A row has three unit vectors (normal, first and second direction), the stretch, and the present
+    A row has three unit vectors (normal, first and second direction), the stretch, and the current
     vectors, of any length, of the two directions that lie in the surface at rest. All are zero
     where triangles have no normal or direction.
     """

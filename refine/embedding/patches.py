@@ -14,7 +14,7 @@ share the curve between them.
 At rest the tangent is d = b - a without its part along the normal at a. In a frame the surrounding
 triangles carry the tangents along with the plane at a. So a point keeps its place on a surface that
 is stretched unevenly, and every affine map of the plane is reproduced exactly. A carried tangent
-may differ from the tangent of the present mesh by at most half of the latter's length; otherwise a
+may differ from the tangent of the current mesh by at most half of the latter's length; otherwise a
 fold would give curves with loops.
 
 Differs from the refined mesh: there are no flat triangles to compensate for, so curves have exactly
@@ -42,7 +42,8 @@ from .frames import (
 
 POINTS = 10
 """Control points of a patch: corners a, b, c; near a towards b and c; near b towards c and a; near
-c towards a and b; and the middle."""
+c towards a and b; and the middle.
+"""
 FRAMES = 3 * POINTS
 """First column of the frames of a patch's corners; a frame is a quaternion and a stretch."""
 WIDTH = FRAMES + 3 * FRAME_NUMBERS

@@ -46,9 +46,9 @@ def nearest_places(
     faces: Integers64,
     groups: list[tuple[Integers64, Integers64]],
 ) -> tuple[Integers64, Floats64]:
-    """Return the nearest places on flat triangles: triangle numbers, (N,), and coordinates, (N, 3).
+    """Return the nearest places on flat triangles: triangle indices (N,), barycentric (N, 3).
 
-    `groups`: pairs of point numbers and allowed triangles.
+    `groups`: pairs of point indices and the triangles that are allowed for them.
     """
     triangles = np.zeros(len(points), dtype=np.int64)
     weights = np.zeros((len(points), 3))

@@ -176,7 +176,7 @@ class Thresholds:
 
     @property
     def most(self) -> np.float32:
-        """The greatest metric: 1 if the second level is switched off."""
+        """The greatest metric of an edge: 1 if the second level is switched off, else infinite."""
         return np.float32(1.0 if np.isinf(self.limits[1]) else np.inf)
 
     def scale(self, measures: Floats32, unit: np.float32 = ONE) -> None:

@@ -26,12 +26,12 @@ is computed.
           \   /
             d
 
-m is the first-level point of the edge; p, q, r, s those of the neighbour edges ac, bc, ad, bd, or
-their midpoints where these are not split. a' and b' are the moved end points; their weights are in
-mesh/rings.py.
+m is the first-level point of the edge. p, q, r and s are the first-level points of the neighbour
+edges ac, bc, ad and bd; if such an edge is not split, its midpoint is used. a' and b' are the moved
+end points; their weights are in mesh/rings.py.
 
-The paper leaves one question open. We decide that the second level reads m, p, q, r, s as the first
-level left them, so that the order of edges does not matter.
+The paper leaves one question open. We decide that the second level reads m, p, q, r and s before it
+moves any point, so that the order of edges does not matter.
 
 The *geomorph weight* of a point is 0 on the straight edge and 1 at its final position; each edge
 has one for each level. It is 1 everywhere unless the frame is blended (beyond/blending.py).
@@ -246,7 +246,7 @@ def place_middles(
 def wing(
     points: Floats32, middles: Floats32, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
-    """Return the first-level point of a neighbour edge at its present geomorph weight."""
+    """Return the first-level point of a neighbour edge at its current geomorph weight."""
     start = row_of(points, ends[0])
     end = row_of(points, ends[1])
     straight = times(HALF, plus(start, end))

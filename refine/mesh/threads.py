@@ -50,7 +50,7 @@ def share(kernel: Callable[..., object], count: int, *arguments: object) -> None
 
 
 def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
-    """Begin a task of `count` items in another thread, if worth it; return a call that ends it."""
+    """Start a task in another thread if `count` items justify it; return a call that awaits it."""
     if threads_for(count) == 1:
         return task
     other = _threads().submit(task)

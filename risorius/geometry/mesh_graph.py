@@ -26,7 +26,7 @@ def length_graph(vertices: Floats64, faces: Integers) -> sparse.csr_array:
 def path_lengths(vertices: Floats64, faces: Integers, starts: npt.ArrayLike) -> Floats64:
     """Lengths of shortest paths along edges from each start to all vertices, shape (n, V).
 
-    vertices: shape (V, 3). starts: vertex numbers, shape (n,). Without a path: infinity.
+    vertices: shape (V, 3). starts: vertex indices, shape (n,). Without a path: infinity.
     """
     graph = length_graph(vertices, faces)
     return np.asarray(csgraph.dijkstra(graph, directed=False, indices=starts))
@@ -45,7 +45,7 @@ def path_to(end: int, before: npt.NDArray[np.integer[Any]]) -> list[int]:
 
 
 def pieces_of(links: Integers, count: int) -> Integers32:
-    """The number of the connected piece of each of `count` things, shape (count,).
+    """The index of the connected piece that each of `count` things belongs to, shape (count,).
 
     links: pairs of connected things, or triangles, whose corners are connected, (n, 2) or (n, 3).
     """

@@ -41,7 +41,7 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
 def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
     """Flag pairs of triangles that intersect and have no common vertex, shape (k,).
 
-    corners: shape (F, 3, 3). faces: vertex numbers, shape (F, 3). pairs: shape (k, 2).
+    corners: shape (F, 3, 3). faces: vertex indices, shape (F, 3). pairs: shape (k, 2).
     """
     cuts = np.zeros(len(pairs), np.bool_)
     for number in range(len(pairs)):
@@ -109,7 +109,7 @@ def exits(
     """Find where rays from one point within a surface leave it.
 
     directions: unit vectors, shape (n, 3). vertices: shape (V, 3). faces: counter-clockwise seen
-    from outside, shape (F, 3). Returns for each exit the number of its ray, the distance, and the
+    from outside, shape (F, 3). Returns for each exit the index of its ray, the distance, and the
     cosine between ray and normal; a ray may leave several layers of the surface.
     """
     normals = cross_products(vertices, faces)

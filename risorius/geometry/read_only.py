@@ -12,7 +12,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 def read_only(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
     """Return a read-only view of an array; the array itself if it is read-only.
 
-    Compiled code uses vertex numbers that were checked once. If a caller changed a number
+    Compiled code uses vertex indices that were checked once. If a caller changed a number
     afterwards, compiled code could read beyond the end of an array.
     """
     if not array.flags.writeable:

@@ -134,7 +134,7 @@ class FileDialogs:
 
 
 def _draw_places(gui: Gui, request: FileRequest) -> None:
-    """Draw buttons for useful folders, and the path of the present folder."""
+    """Draw buttons for useful folders, and the path of the current folder."""
     places = {"Up": request.folder.parent, "Home": Path.home()}
     if not request.is_saving and SCRIPT_SUFFIX in request.suffixes:
         places["Examples"] = Path(str(files("risorius.assets") / "scripts"))

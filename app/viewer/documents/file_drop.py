@@ -59,7 +59,7 @@ class FileDrop:
         show_scene: Callable[[Scene], None],
         read: Callable[[Path, Path | None], Task],
     ) -> None:
-        """show_scene: replaces the present scene by a scene with another head.
+        """show_scene: replaces the current scene by a scene with another head.
 
         read: reads a mesh, and landmarks if a file has some, in a thread; returns a task that opens
         the marking of the missing landmarks.

@@ -163,7 +163,7 @@ def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool
 
 
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
-    """Draw a list with imgui's present width; return a choice made in this frame, or None."""
+    """Draw a list with imgui's current width; return a choice made in this frame, or None."""
     chosen = None
     flags = imgui.ComboFlags_.height_largest
     is_open = imgui.begin_combo(f"##{label}", readable(present), flags)

@@ -1,4 +1,4 @@
-"""A mesh during the marking of its landmarks: present places, undo, its file.
+"""A mesh during the marking of its landmarks: current places, undo, its file.
 
 This module is independent of windows. Places are in the mesh's own coordinates; `placing`
 transforms them to the picture's space, which is upright and in millimetres once all marks exist.
@@ -157,7 +157,7 @@ class Marking:
         return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
-        """Turn the mesh upright at a head's size, once; AssetError if the marks fit no face."""
+        """Turn the mesh upright and scale it, once; raises AssetError if no face fits the marks."""
         upright = placing(known)
         if not self.is_upright:
             self._upright = upright

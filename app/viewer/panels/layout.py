@@ -18,7 +18,7 @@ from ..timeline.timeline import Timeline
 
 
 def draw_message(gui: Gui, messages: Messages, view: SceneView) -> None:
-    """Draw the present message, if there is one; a click or Escape removes it."""
+    """Draw the current message, if there is one; a click or Escape removes it."""
     if not messages.text:
         return
     left, top, width, _ = view.area

@@ -54,7 +54,7 @@ class SceneView:
         self.fit_scene()
 
     def fit_scene(self) -> None:
-        """Frame the whole scene from the script's view; UserError for an unknown view."""
+        """Frame the whole scene from the script's view; raises UserError for an unknown view."""
         script = self._session.script
         check_camera(script.camera, script.source)
         self.camera = whole_scene(self._session.scene, script.camera)
@@ -148,7 +148,7 @@ class Stage:
         self.bind(display)
 
     def bind(self, display: Display) -> None:
-        """Bind the refiners of `display`; UserError if a refiner refuses its options."""
+        """Bind the refiners of `display`; raises UserError if a refiner refuses its options."""
         tone = TONES[display.tone]
         if tone != self._tone:
             self.pipeline.set_tone(tone)
@@ -360,7 +360,7 @@ class Painter:
 
     @property
     def is_complete(self) -> bool:
-        """Whether the picture shows the present view, in full detail."""
+        """Whether the picture shows the current view, in full detail."""
         return self._painted == (self._view.state, FULL_DETAIL)
 
     def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:

@@ -153,7 +153,7 @@ State = TypeVar("State")
 
 
 class History(Generic[State]):
-    """States for undo and redo; `place` is the number of the present state."""
+    """States for undo and redo; `place` is the index of the current state."""
 
     def __init__(self, present: State) -> None:
         self._states = [present]
@@ -161,7 +161,7 @@ class History(Generic[State]):
 
     @property
     def can_undo(self) -> bool:
-        """Whether a state before the present exists."""
+        """Whether there is a state before the current one."""
         return self.place > 0
 
     @property
@@ -183,7 +183,7 @@ class History(Generic[State]):
         self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:
-        """Replace the present state without a step of undo."""
+        """Replace the current state without a step of undo."""
         self._states[self.place] = state
 
     def go(self, place: int) -> State:

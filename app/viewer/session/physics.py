@@ -55,7 +55,7 @@ class FrameTimes:
 
     @contextmanager
     def timed(self, phase: str) -> Iterator[None]:
-        """Measure the block, and add its time to a phase of the present frame."""
+        """Measure the block, and add its time to a phase of the current frame."""
         if self._is_over:
             for column in (*self.milliseconds.values(), self.whole):
                 column.append(0.0)

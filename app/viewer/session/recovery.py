@@ -77,7 +77,7 @@ class Recovery:
         return self._due - self._clock()
 
     def save(self) -> None:
-        """Write unsaved work; UserError, once, if the file cannot be written."""
+        """Write unsaved work; raises UserError, once, if the file cannot be written."""
         state = _state(self._session)
         if self._path is None or state == self._safe or not self._session.work.unsaved:
             return
@@ -120,7 +120,7 @@ class Recovery:
 
 
 def unsaved_script(session: Session) -> Script:
-    """Return the script with the recording; a pose by hand becomes a key at the present time."""
+    """Return the script with the recording; a pose by hand becomes a key at the current time."""
     recorder = session.recorder
     script = (recorder.script() if recorder is not None else None) or session.script
     if _has_pose(session):

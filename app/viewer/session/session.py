@@ -45,7 +45,7 @@ class Session:
         self.work = Work(self)
 
     def move_to(self, scene: Scene) -> None:
-        """Continue with another scene and the same work; UserError if the scene lacks controls."""
+        """Keep the work, and show another scene; raises UserError if the scene lacks controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
@@ -233,7 +233,7 @@ class Session:
             )
 
     def set_key(self, names: Iterable[str] | None = None) -> float:
-        """Make the present face a key; returns its time [s].
+        """Make the current face a key; returns its time [s].
 
         names: the controls to key, None for a whole pose. Other controls keep their values by hand.
         """
@@ -322,7 +322,7 @@ class Session:
 
     @property
     def recorded_seconds(self) -> float:
-        """Present duration of the recording [s]."""
+        """Current duration of the recording [s]."""
         return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
     def replace_script(self, script: Script, file: ScriptFile) -> None:
@@ -351,7 +351,7 @@ class Work:
             self._session.replace_script(script, ScriptFile.of(script))
 
     def begin_script(self) -> None:
-        """Begin a script with the present face as its pose, to which keys can be added."""
+        """Begin a script with the current face as its pose, to which keys can be added."""
         session = self._session
         old = session.script
         is_unsaved = session.pose_is_unsaved
@@ -364,7 +364,7 @@ class Work:
         self._session.file.save(self._session.script, path)
 
     def save_pose(self, path: Path) -> None:
-        """Write the present controls to a file; raises UserError if it cannot be written."""
+        """Write the current controls to a file; raises UserError if it cannot be written."""
         session = self._session
         pose = pose_script(session.current, title=path.stem, scene=session.script.scene)
         save_script(path, pose)

@@ -32,7 +32,7 @@ class Soundtrack:
         self.sound = None  # the script's sound; None without one
 
     def refresh(self) -> None:
-        """Read the script's sound if it has changed; UserError, once, if this fails."""
+        """Read the script's sound if it has changed; raises UserError, once, if this fails."""
         file = self._session.script.sound
         if file == self._file:
             return

@@ -34,7 +34,7 @@ class Hit(NamedTuple):
 
 
 class Handle(NamedTuple):
-    """A control point of the segment that ends at a key; it sets the slope at one end."""
+    """A Bezier control point of the segment that ends at `key`; it sets the slope at one end."""
 
     key: Places
     number: int  # 0: at the start of the segment, 1: at its end

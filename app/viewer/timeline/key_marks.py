@@ -26,7 +26,7 @@ Point = tuple[float, float]
 def draw_ruler(
     theme: Theme, axis: TimeAxis, time: float, duration: float, edges: tuple[float, float]
 ) -> None:
-    """Draw ticks with seconds, the script's end, and a handle for scrubbing at the present time.
+    """Draw ticks with seconds, the script's end, and a handle for scrubbing at the current time.
 
     time, duration: [s]. edges: the upper and the lower edge [window units].
     """
@@ -63,7 +63,7 @@ def number_of(time: float) -> str:
 
 
 def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float, float]) -> None:
-    """Draw the line at the present time [s], from one edge to the other [window units]."""
+    """Draw the line at the current time [s], from one edge to the other [window units]."""
     if axis.start <= time <= axis.end:
         x = round(axis.x(time)) + 0.5
         ink = ink_of(theme.accent)
@@ -200,7 +200,7 @@ class Waveform:
     def draw(self, time: float, duration: float, corner: Point) -> None:
         """Draw the waveform from its upper left corner; it is faint after the script's end.
 
-        time: the present time [s]. duration: duration of the script [s].
+        time: the current time [s]. duration: duration of the script [s].
         """
         sound = self._soundtrack.sound
         axis = self._axis

@@ -105,11 +105,11 @@ class KeySelection:
         return bool(self.places) and self.can_edit
 
     def set_key(self) -> Message:
-        """Key the controls that were moved since the last key, at the present time."""
+        """Key the controls that were moved since the last key, at the current time."""
         return self.key_controls(self._session.touched)
 
     def key_controls(self, names: Collection[str]) -> Message:
-        """Key these controls alone, at the present time."""
+        """Key these controls alone, at the current time."""
         if not names:
             raise UserError(
                 "no control was moved since the last key; [Key whole pose] sets keys for all"
@@ -124,7 +124,7 @@ class KeySelection:
         return f"{controls} keyed at {time:.2f} s"
 
     def key_whole_pose(self) -> Message:
-        """Make the present face a key of all controls at the present time."""
+        """Make the current face a key of all controls at the current time."""
         time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
@@ -132,14 +132,14 @@ class KeySelection:
         return f"Whole pose keyed at {time:.2f} s"
 
     def keys_of(self, names: Iterable[str]) -> Places:
-        """Return the keys at the present time in the tracks of these controls."""
+        """Return the keys at the current time in the tracks of these controls."""
         session = self._session
         reach = 0.5 * keyframes.FRAME
         there = keyframes.places_of(session.script).near(session.time, reach).times
         return Places({name: there[name] for name in names if name in there})
 
     def delete_keys_of(self, names: Collection[str]) -> Message:
-        """Delete the keys at the present time in the tracks of these controls."""
+        """Delete the keys at the current time in the tracks of these controls."""
         session = self._session
         session.edit(keyframes.without(session.script, self.keys_of(names)))
         return f"{listed(names)}: key deleted; [Undo] brings back"
@@ -164,7 +164,7 @@ class KeySelection:
         return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
 
     def paste(self) -> Message:
-        """Paste the copied keys at the present time, even into another script."""
+        """Paste the copied keys at the current time, even into another script."""
         assert self.copied is not None
         source, places = self.copied
         offset = keyframes.key_time(self._session.script, self._session.time) - places.first

@@ -66,7 +66,7 @@ def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> S
 
 
 def _refine_once(scene: Scene, display: Display) -> None:
-    """Refine the present scene; raises UserError if the refiner refuses it, or fails."""
+    """Refine the current scene; raises UserError if the refiner refuses it, or fails."""
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
     with reported(plug_ins_of(*refinement.on(scene.name))):

@@ -25,7 +25,7 @@ class Schedule:
         mode: Callable[[], Mode],
         due_in: Callable[[], float],
     ) -> None:
-        """mode: returns the present mode. due_in: returns the time to the next saving [s]."""
+        """mode: returns the current mode. due_in: returns the time to the next saving [s]."""
         self._context = context
         self._file_drop = file_drop
         self._mode = mode
@@ -53,7 +53,7 @@ class Schedule:
 
     @property
     def spent(self) -> float:
-        """Time of the present frame so far [s]."""
+        """Time of the current frame so far [s]."""
         return time.perf_counter() - self._begun
 
     @property

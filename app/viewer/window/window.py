@@ -301,7 +301,7 @@ class Viewer:
         return None
 
     def remember(self) -> None:
-        """Write the present settings; raises UserError if this fails."""
+        """Write the current settings; raises UserError if this fails."""
         if self._settings_path is not None:
             self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)

@@ -88,7 +88,7 @@ class Bound:
         self.stays = splits is not None
 
     def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
-        """Refine the evaluated `source` into `mesh`; ValueError for another number of elements."""
+        """Refine the evaluated `source` into `mesh`; raises ValueError if element counts differ."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
         values = {
