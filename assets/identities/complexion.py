@@ -96,6 +96,7 @@ def recoloured(
     haired_as: float | None = None,
     fringe: float = 0.0,
     shrink: int = 1,
+    behind: Floats32 | None = None,
 ) -> Image:
     """Recolour the albedo of the built-in head for a skin tone: sRGB, (H, W, 3), uint8.
 
@@ -105,6 +106,7 @@ def recoloured(
       `features`. None: `angle` decides the colour, and hair begins at the built-in hairline.
     - fringe: strength of single hairs at the hairline, 0 to 1.
     - shrink: factor by which width and height are smaller, a power of 2 up to 16.
+    - behind: distances of texels behind the hairline of `features` [mm], (H, W), if they are known.
     """
     # This module imports numba, which takes long.
     from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
@@ -117,7 +119,8 @@ def recoloured(
     grey_share = 0.12  # factor on greyness outside the scalp: brows turn grey less, lashes hardly
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
-    behind = None if haired_as is None else _behind(tints, features)
+    if behind is None and haired_as is not None:
+        behind = _behind(tints, features)
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # fraction of light that reaches the skin between dense hairs
     lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
@@ -208,7 +211,7 @@ def coloured(
     )
     return replace(
         person,
-        albedo=in_tone(angle),
+        albedo=in_tone(angle, behind=behind if shrink == 1 else None),
         ambient_occlusion=_occlusion(shrink),
         # Small pictures do not show the relief of necks, so all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
