@@ -47,7 +47,7 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
 
 
 def unique_points(points: Floats64) -> tuple[Integers64, Integers64]:
-    """Distinct points of (n, 3), by first occurrence, and each point's number among these."""
+    """Distinct points of (n, 3), by first occurrence, and each point's index among these."""
     _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return first[order], np.argsort(order)[number.reshape(-1)]

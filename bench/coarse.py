@@ -2,8 +2,8 @@
 
 The built-in head holds some poses. The coarse layout (assets/coarse.toml) uses the built-in head's
 own vertices, so only the choice of triangles makes a difference. Every edge is split twice, and the
-normals of the new triangles are compared with those of the built-in head nearby: shading depends on
-normals.
+normals of the new triangles are compared with the normals of the built-in head nearby: shading
+depends on normals.
 
 A flip replaces the edge between two triangles by the other diagonal of their quadrilateral.
 `search` tries edges in a random order, and keeps each flip that lowers the angle over the whole

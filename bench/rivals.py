@@ -134,7 +134,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
 
 
 def available() -> tuple[list[Method], list[str]]:
-    """Our methods, those of installed libraries, and a line for each missing library."""
+    """Our methods, the methods of installed libraries, and a line for each missing library."""
     found = list(OURS)
     skipped = {}
     for method in METHODS:

@@ -1,8 +1,9 @@
-"""The paper's refiner on the graphics card, `kahler-gl`: its results have the bits of `kahler`.
+"""The paper's refiner on the graphics card, `kahler-gl`; its results equal those of `kahler`.
 
 Kähler, Haber, Seidel, "Dynamically refining animated triangle meshes for rendering", The Visual
 Computer 2003. Positions are uploaded in every frame, and six passes of compute shaders turn them
-into triangles in the memory that is drawn. Nothing is read back unless a caller reads it.
+into triangles in the memory that is drawn. Triangles equal those of `kahler` to the last bit.
+Nothing is read back unless a caller reads it.
 
     refiner = refine.create("kahler-gl", faces, rest_positions)
     mesh = refiner.refine(positions)          # arrays are fetched when they are read

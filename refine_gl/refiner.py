@@ -68,9 +68,9 @@ def create_kahler_gl(
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles.
     - `scheme`: "loop", the paper's, with its normals, or "cubic", with those of its own surface.
-    - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
-      chooses True for "cubic", unless it is `coherent`, and False for "loop", where True is
-      refused.
+    - `blend`: whether points move gradually out of their edges, so that nothing pops. None, the
+      default, chooses True for "cubic", unless it is `coherent`, and False for "loop", where True
+      is refused.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `refine.create` takes them.
       Cubic edges with creases are refined by the processor.

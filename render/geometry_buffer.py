@@ -1,8 +1,8 @@
 """Draw the G-buffer: depth, normal and triangle of the surface in each pixel of a picture.
 
-It uses the vertex buffers and matrices of the colours, but one sample at the centre of each pixel.
-So no value is a mean of two surfaces. Source: Saito and Takahashi 1990, "Comprehensible rendering
-of 3-D shapes".
+It uses the vertex buffers and matrices of the colour picture, but one sample at the centre of each
+pixel. So no value is a mean of two surfaces. Source: Saito and Takahashi 1990, "Comprehensible
+rendering of 3-D shapes".
 """
 
 from collections.abc import Mapping, Sequence

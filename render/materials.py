@@ -80,7 +80,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:
     """Set the uniforms of a part; call `set_light` first.
 
-    Highlights of dull parts are broad and faint, those of wet parts small and bright. Enclosed
+    Highlights of dull parts are broad and faint, highlights of wet parts small and bright. Enclosed
     parts and fibres get no rim light.
     """
     kind = part.kind

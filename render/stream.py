@@ -181,8 +181,8 @@ class MeshBuffers:
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw a group of the uploaded triangles; BUMPED and SMOOTH need a mesh with bumps.
 
-        The program gets those of the attributes in_position, in_normal, in_uv, in_bumps,
-        in_u_gradient, in_v_gradient and in_fade that it uses.
+        Available attributes: in_position, in_normal, in_uv, in_bumps, in_u_gradient, in_v_gradient
+        and in_fade.
         """
         if share is Share.ALL:
             self._draw_all(self._vertex_array(program, self.index_buffer))

@@ -61,7 +61,7 @@ def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[s
     Code is stored for this package only: the dependencies of other code are unknown.
 
     - `lanes`: whether the compiler combines equal work on neighbouring numbers (LLVM's SLP
-      vectoriser, which numba leaves out). The bits are the same.
+      vectoriser, which numba leaves out). Results are equal to the last bit.
     - `fastmath`: inexact optimisations that the compiler may use, as in numba; by default none.
     """
     options: dict[str, Any] = {"fastmath": set(fastmath)} if fastmath else {}

@@ -44,7 +44,7 @@ class LipPairs(NamedTuple):
     members: Integers32  # (M,) all vertices in pairs
 
     def apart(self, values: Floats64) -> Floats64:
-        """Values (V, 3) of the vertices of all pairs minus those of their points, shape (P, 3)."""
+        """Values (V, 3) at vertices of all pairs, minus values at their points, shape (P, 3)."""
         a, b = self.beside.T
         share = self.share[:, None]
         apart: Floats64 = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]

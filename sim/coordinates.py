@@ -96,7 +96,7 @@ def to_posed_head(
 
     Vertices with such positions are not written.
 
-    x, rest: positions now and at rest [mm]; axes (3, 3): those of the standard space in head
+    x, rest: positions now and at rest [mm]; axes (3, 3): axes of the standard space in head
     coordinates, times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the
     head; share (V, 1): how far each vertex follows it.
     """

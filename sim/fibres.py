@@ -83,7 +83,7 @@ class FibreBundle(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """The points of lines that lie on other lines; line b has rows[b] up to rows[b + 1]."""
+    """The points of lines that lie on other lines; line b has rows[b]:rows[b + 1]."""
 
     rows: Unsigned32  # (B + 1,)
     point: Unsigned32  # (n,) number within the carried line
@@ -103,7 +103,7 @@ class LineMotion(NamedTuple):
 
     @classmethod
     def of(cls, line_count: int) -> LineMotion:
-        """Room for the displacements of this many lines."""
+        """Allocate the displacements of this many lines."""
         return cls(
             np.zeros((line_count, SAMPLES, 3)),
             np.zeros((line_count, FIBRE_POINTS, 3)),
@@ -169,7 +169,7 @@ def hang_on_fibre(
     arc: Floats64,
     steady: Floats64,
 ) -> None:
-    """Fill the columns of an `Attachment` for the places that a fibre (k, 3) reaches."""
+    """Fill the columns of an `Attachment` for the points within reach of a fibre (k, 3)."""
     cut_widths = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
     bulge_spread = 0.3  # of the fibre's length (fitted)
     end = len(points) - 1

@@ -1,8 +1,8 @@
 """From contraction values to forces: one anchor per skin vertex, summed over active muscles.
 
-Every attached vertex hangs on its muscle by a spring of stiffness k w A (k of the muscle,
-attachment weight w, skin area A). At activation a the stiffness grows from a passive share p to its
-full value, and the far end is displaced:
+A spring of stiffness k w A ties every attached vertex to its muscle (k of the muscle, attachment
+weight w, skin area A). At activation a the stiffness grows from a passive share p to its full
+value, and the far end is displaced:
 
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
 
@@ -46,7 +46,7 @@ from .surface import SkinSurface
 
 
 class Attachments(NamedTuple):
-    """Vertices attached to muscles or lines; owner m has rows[m] up to rows[m + 1]."""
+    """Vertices attached to muscles or lines; owner m has rows[m]:rows[m + 1]."""
 
     rows: Unsigned32  # (owners + 1,)
     vertex: Unsigned32  # (n,)
@@ -55,7 +55,7 @@ class Attachments(NamedTuple):
 
 
 class SkinAttachments(NamedTuple):
-    """How the skin hangs on M muscles and on their B lines."""
+    """How the skin is attached to M muscles and to their B lines."""
 
     muscle: Integers32  # (B,) number of each line's muscle
     passive: Floats64  # (M,) share of the stiffness at rest
@@ -65,7 +65,7 @@ class SkinAttachments(NamedTuple):
 
 
 class LineHold(NamedTuple):
-    """The skin that hangs on a line, for drawing; empty if none does."""
+    """The skin that is attached to a line, for drawing; empty if there is none."""
 
     vertices: Unsigned32  # (n,)
     weight: Floats64  # (FIBRE_POINTS, n) of each vertex at the line's points, with sum 1

@@ -1,9 +1,9 @@
 """Muscles that lie on other muscles: control points carried and lifted by the muscles beneath.
 
 A row of the rig names the muscles that a muscle lies on (`lies_on`). Each control point of its
-lines hangs on each of those muscles as skin does (muscles.py), but on one line only, the one that
-holds it most. Let w be this hold, u the displacement along the contracting line at the point's
-foot, s the bulge there with the other terms that are linear in the activation a, and o' the
+lines is attached to each of those muscles as skin is (muscles.py), but to one line only, the one
+with the greatest weight. Let w be this weight, u the displacement along the contracting line at the
+point's foot, s the bulge there with the other terms that are linear in the activation a, and o' the
 displacement of that line by the muscles beneath it. The point moves by
 
     o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
@@ -16,7 +16,7 @@ after the lines beneath it; rig.py refuses circles.
 
 Source: Kähler et al. 2001, section 4 (muscles attached to muscles). The order of muscles: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
-Differs from it: a point hangs on a muscle by a smooth weight, which fades toward its border.
+Differs from it: a smooth weight attaches a point to a muscle, and fades toward the muscle's border.
 """
 
 from __future__ import annotations

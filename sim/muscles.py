@@ -5,9 +5,9 @@ elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the 
 protrude. Upper and lower half are separate muscles. Both kinds bulge the skin as they contract. A
 muscle that lies on another is attached to it in the same way (muscle_stack.py).
 
-Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging.
-Differs from it: skin hangs on fibre points by smooth weights instead of on the nearest ellipsoid,
-and bulge acts along the skin normal. Weights were fitted to scanned expressions.
+Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging. Differs from it: smooth
+weights attach skin to fibre points, in the paper the nearest ellipsoid does. Bulge acts along the
+skin normal. Weights were fitted to scanned expressions.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter; used o
 
 
 class Attachment(NamedTuple):
-    """How places hang on one line of a muscle."""
+    """How points are attached to one line of a muscle."""
 
     weight: Floats64  # (n,)
     arc: Floats64  # (n,) place along the line, 0..1
@@ -136,7 +136,7 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
 def attach(
     placed: PlacedMuscle, line: Line, landmarks: Floats64, places: AttachedPoints
 ) -> Attachment:
-    """Hang places on one line of a muscle in a face."""
+    """Attach points to one line of a muscle in a face."""
     muscle = placed.muscle
     side = placed.side
     if isinstance(muscle, RingMuscle):
@@ -155,7 +155,7 @@ def _gate(muscle: Muscle, side: Side) -> Gate:
 def attach_to_fibre(
     muscle: LinearMuscle, fibre: Fibre, points: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
-    """Hang places on a fibre of a linear muscle; the skin slides, converges and bulges."""
+    """Attach points to a fibre of a linear muscle; the skin slides, converges and bulges."""
     hold = FibreHold(
         width=muscle.width * fibre.width_factor,
         beyond=muscle.beyond * fibre.width_factor,
@@ -175,7 +175,7 @@ def attach_to_fibre(
 def attach_to_ring(
     muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
-    """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
+    """Attach points to a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
     _, up, down = muscle.radii
     rho, weight = _within_ring(muscle, landmarks, side, places)
     on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip

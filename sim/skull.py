@@ -2,9 +2,9 @@
 
 Skin is simulated in coordinates of the cranium. The pose of the head turns the result as a whole
 about the joint with the spine. The mandible turns about the axis through both condyles and glides
-with them; skin hangs on cranium and mandible by a weight. Eyeballs turn in place. These rigid
-degrees of freedom are controls beside the muscles: no spring moves a bone. bones.py has the current
-poses.
+with them; a weight divides each skin vertex between cranium and mandible. Eyeballs turn in place.
+These rigid degrees of freedom are controls beside the muscles: no spring moves a bone. bones.py has
+the current poses.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin). Differs from it: the
 condyles also glide (a real jaw opens by turning and sliding), and the jaw also moves forward and

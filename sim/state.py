@@ -3,7 +3,7 @@
 One `State` belongs to one simulation and is allocated once; kernels take it whole and write into
 its arrays. Coordinates are the standard space of coordinates.py [mm, mm/s].
 
-Source: Kähler et al. 2001: point masses at the vertices, moved by the springs that they hang on.
+Source: Kähler et al. 2001: point masses at the vertices, moved by the springs attached to them.
 """
 
 from __future__ import annotations

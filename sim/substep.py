@@ -54,7 +54,7 @@ def substeps_in(tick: float) -> int:
 
 
 def parts(whole: float, longest: float) -> int:
-    """Return the number of equal parts, none longer than `longest`, of a time [s]."""
+    """Return into how many equal parts, none longer than `longest`, a time [s] is divided."""
     return max(1, math.ceil(whole / longest - ROUNDING))
 
 

@@ -102,7 +102,7 @@ class EdgeSprings(NamedTuple):
         )  # fmt: skip
 
     def row_bound(self, vertex_count: int) -> Floats64:
-        """Gershgorin bound of the springs' stiffness by vertex, stiff slope, shape (V,)."""
+        """Gershgorin bound of each vertex's row of the stiffened stiffness matrix, shape (V,)."""
         most = 2.0 * (self.stiffness * self.stiffening + self.shear)
         bound = np.zeros(vertex_count)
         for end in range(2):

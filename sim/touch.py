@@ -34,7 +34,7 @@ class Touch:
     def drag(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
     ) -> None:
-        """Hang vertices on springs until the next `drag` or `end_drag`: a finger pulls the skin.
+        """Attach vertices to springs until the next `drag` or `end_drag`: a finger pulls the skin.
 
         vertices: their indices, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),

@@ -45,7 +45,7 @@ class Limits(dict[str, tuple[float, float]]):
         return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
     def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:
-        """Return values of all controls within limits; unnamed ones are as in `over`, else 0.
+        """Return values of all controls within limits; missing ones are taken from `over`, or 0.
 
         Raises UserError for an unknown name.
         """

@@ -50,9 +50,9 @@ def labels_of_face(
 def action_units(scene: FaceScene) -> dict[str, float]:
     """Return the values of all action units of a face, 0 to 1: AU12_left, AU12_right, AU12 etc.
 
-    A unit that is set has the set value. Other controls (visemes, head and gaze) are expressed by
-    units as well as possible. A unit without a side has the value of its stronger side, because
-    FACS scores it without regard to sides.
+    A unit whose control is set has this value. Other controls (visemes, head and gaze) are
+    expressed by units as well as possible. A unit without a side has the value of its stronger
+    side, because FACS scores it without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))

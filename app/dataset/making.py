@@ -42,7 +42,7 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make those of `count` samples, from number `first` on, that are missing or incomplete.
+    """Make the missing or incomplete samples among `count` samples from number `first` on.
 
     jobs: number of local processes. scheduler: address of a Dask cluster that makes the samples
     instead. resume: whether the folder may already hold samples of this set. Raises UserError if

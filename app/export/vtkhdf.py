@@ -1,7 +1,7 @@
 """Writes VTKHDF, for ParaView and VTK: all frames in one HDF5 file, constant triangles once.
 
-Arrays contain the rows of all frames. Each frame is a step, with the number of its first row in
-each array. Lengths are millimetres.
+Arrays contain the rows of all frames. Each frame is a step, with the index of its first row in each
+array. Lengths are millimetres.
 
 Source: Kitware, "VTKHDF format specification", version 2.0, PolyData with steps.
 """

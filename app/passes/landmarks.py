@@ -76,7 +76,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     """Return the outline of a face as a camera sees it [mm], shape (17, 3), from right to left.
 
     The outline takes the outermost point of each line over the skin. Outward means to the side at
-    the eyes and down at the chin; further rounds use the normals of the outline found before. As
+    the eyes and down at the chin; further iterations use the normals of the previous outline. As
     annotators do, points are spaced evenly from the height of one eye's outer corner to the height
     of the other's. Heights are measured on the head: if a face looks down, the outline begins above
     the eyes in the picture.

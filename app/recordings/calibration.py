@@ -1,6 +1,6 @@
 """Calibration: the neutral face of a recorded person, and gains of the channels.
 
-Trackers do not read 0 from a face at rest: in most faces a phone reads a quarter of a frown.
+Trackers do not measure 0 on a face at rest: on most faces a phone measures a quarter of a frown.
 Calibration subtracts the neutral value n of a channel v, and leaves the greatest value, 1, as it
 is:
 

@@ -117,7 +117,7 @@ def eased(script: Script, places: Places, easing: str) -> Script:
 def raised(
     script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
 ) -> Script:
-    """Raise the values of keys within limits; in poses only those of the controls `posed`."""
+    """Raise the values of keys within limits; in poses, only the controls `posed` are raised."""
     poses = script.poses
     tracks = dict(script.tracks)
     for name, times in places.times.items():

@@ -39,7 +39,7 @@ def nearest_own(known: Head, warped: Floats64, skin: SkinPiece, normals: Floats6
 
 
 def lip_sides(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers32:
-    """Return 1 for vertices of the upper lip, -1 for those of the lower lip, else 0; (V,)."""
+    """Return 1 for vertices of the upper lip, -1 for vertices of the lower lip, else 0; (V,)."""
     edges_of_lips = (slice(61, 64), slice(65, 68))
     paths = [path_lengths(vertices, faces, landmarks[edge]).min(axis=0) for edge in edges_of_lips]
     upper, lower = paths

@@ -1,7 +1,7 @@
 """A linear model of face shapes on the built-in head's vertices, and random persons drawn from it.
 
 A face is the mean plus a weighted sum of modes. A weight of 1 is one standard deviation of people.
-The modes were fitted to those of ICT-FaceKit (docs/head.md). They are principal components: the
+The modes were fitted to the modes of ICT-FaceKit (docs/head.md). They are principal components: the
 first modes move the face most. They depend on neither sex nor age. Source: Blanz, Vetter 1999, "A
 morphable model for the synthesis of 3D faces".
 
@@ -81,7 +81,7 @@ class Identity:
     - brows: how far the brows are moved up [mm].
     - furrows: depth of furrows of age, relative to most people of the same age.
     - seen_lid: height of the upper lid's visible skin below the crease [mm]; negative: none shows.
-    - hooding: how much less of this skin is visible at the outer corner of the eye [mm].
+    - hooding: reduction of `seen_lid` at the outer corner of the eye [mm].
     - smile: how the smile differs from the built-in one.
     - larynx: how far the larynx stands out [mm].
     - sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a

@@ -11,9 +11,9 @@ Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the open
       ^
     u |                   along  u . v        aside  n . (u x v)        up  n . (v - u)
       p
-                      The distance between these numbers and their values at rest is near the angle
-                      [rad] by which the turn has changed, in the surface (aside) and out of it
-                      (up). The numbers are smooth wherever edges have a length, even where the
+                      The distance between these numbers and their values at rest approximates the
+                      angle [rad] by which the turn has changed, in the surface (aside) and out of
+                      it (up). The numbers are smooth wherever edges have a length, even where the
                       border folds back.
 
     measure of a border edge = mean of the turns at its ends: the angle between the tangents there

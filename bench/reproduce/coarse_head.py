@@ -50,7 +50,7 @@ class Cell(Shot):
 
 
 def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
-    """Error of each look over that of the static mesh, and the share of its changes that help."""
+    """Error of each look relative to the static mesh, and the fraction of its changes that help."""
     rows = []
     sums = {name: np.zeros(5) for name in LOOKS}
     for expression, cells in _drawn(size):

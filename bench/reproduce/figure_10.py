@@ -86,7 +86,7 @@ class Cell(Shot):
 
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
-    """Error at the mouth by the paper's rule and the cubic scheme, over the static mesh's error."""
+    """Error at the mouth by the paper's rule and the cubic scheme, relative to the static mesh."""
     changed = []
     left = list[float]()
     outline = list[float]()

@@ -113,7 +113,7 @@ def levels_apart(image: Image, truth: Image) -> float:
 
 
 def outline_apart(image: Image, truth: Image) -> float:
-    """Number of pixels covered in only one of two pictures, over the true surface's pixels."""
+    """Number of pixels that only one picture covers, relative to the true surface's pixels."""
     shows = _grey(image) < BACKGROUND
     true_shows = _grey(truth) < BACKGROUND
     return float((shows != true_shows).sum() / true_shows.sum())

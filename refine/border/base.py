@@ -153,7 +153,7 @@ class BaseRefiner(Refiner):
 
     @property
     def vertex_columns(self) -> int:
-        """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
+        """Columns of a stream's vertices: 6, plus 2 with texture coordinates, plus attributes."""
         return GEOMETRY_COLUMNS + (0 if self._values is None else self._values.values.shape[1])
 
     def refine(

@@ -173,7 +173,7 @@ class Refiner(Protocol):
 
     @property
     def vertex_columns(self) -> int:
-        """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
+        """Columns of a stream's vertices: 6, plus 2 with texture coordinates, plus attributes."""
 
     def refine(
         self,

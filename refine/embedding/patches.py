@@ -14,8 +14,8 @@ share the curve between them.
 At rest the tangent is d = b - a without its part along the normal at a. In a frame the surrounding
 triangles carry the tangents along with the plane at a. So a point keeps its place on a surface that
 is stretched unevenly, and every affine map of the plane is reproduced exactly. A carried tangent
-may differ from the tangent of the current mesh by at most half of the latter's length; otherwise a
-fold would give curves with loops.
+may differ from the tangent of the current mesh by at most half of that tangent's length; otherwise
+a fold would give curves with loops.
 
 Differs from the refined mesh: there are no flat triangles to compensate for, so curves have exactly
 the displacement of the cubic, and vertex normals are used without steepening.

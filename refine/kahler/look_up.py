@@ -49,10 +49,10 @@ def number_points(
 ) -> tuple[int, int, int]:
     """List the split edges, give new points their rows, and triangles their configuration.
 
-    The arrays from `splits` on are those of `FrameBuffers`. `split_once` receives every split edge,
-    and `split_twice` the edges split twice. The entries of `first_points` for edges without a split
-    have no meaning. `counts` receives all counts except the number of centres. Returns the numbers
-    of output rows and triangles, and the most splits of an edge.
+    `splits` and all later arguments are arrays of `FrameBuffers`. `split_once` receives every split
+    edge, and `split_twice` the edges split twice. The entries of `first_points` for edges without a
+    split have no meaning. `counts` receives all counts except the number of centres. Returns the
+    numbers of output rows and triangles, and the most splits of an edge.
     """
     edge_count = edge_sides.shape[0]
     face_count = configurations.shape[0] - 1
@@ -142,9 +142,9 @@ def look_up_triangles(
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
-    `splits`, `first_points`: those of `FrameBuffers`; `first_centre`: the row of the first point in
-    the middle of a triangle; the two arrays of `Patterns`; `triangles`, `source`: of a stream. An
-    attribute edge keeps its points in the direction of the edge; a triangle that runs against it
+    `splits`, `first_points`: arrays of `FrameBuffers`; `first_centre`: the row of the first point
+    in the middle of a triangle; the two arrays of `Patterns`; `triangles`, `source`: of a stream.
+    An attribute edge keeps its points in the direction of the edge; a triangle that runs against it
     reads the quarter points in reverse. Centres are numbered in the order of the triangles that
     have one.
     """

@@ -258,7 +258,7 @@ def points_on_edges(
 ) -> tuple[npt.NDArray[np.integer], Floats64]:
     """Places of the new points on edges: ends and their weights, shape (N, 3) each.
 
-    `ends`: those of attribute edges, shape (R, 2); `splits`: those of these edges, shape (R,).
+    `ends`: end points of attribute edges, shape (R, 2); `splits`: number of splits of each, (R,).
     """
     point_counts = np.array(POINTS_OF_EDGE)[splits]
     # Places of the points of a block along the edge, in quarters: x 2 x or 1 2 3.

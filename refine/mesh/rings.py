@@ -29,7 +29,7 @@ BORDER_RING_WEIGHT = 1 / 8
 
 
 class Rings(NamedTuple):
-    """Rings and weights of the vertex rule: own x itself + ring x (sum over its ring).
+    """Rings and weights of the vertex rule: own x vertex + ring x (sum over its ring).
 
     A ring has the neighbours along all edges, or, for a vertex on a border curve, along the border
     only. Most rings have at most eight vertices. Shorter rings are filled up to eight with the

@@ -18,7 +18,7 @@ def cross_products(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats
 
 
 def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
-    """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero without faces."""
+    """Area-weighted unit normals of vertices, shape (V, 3); zero at vertices without faces."""
     cross = cross_products(vertices, faces)
     corners = faces.T.ravel()
     total = np.stack(
