@@ -283,7 +283,7 @@ class Task:
 
     @property
     def share(self) -> float:
-        """Finished share of the work, 0..1; 0 if it is stopped."""
+        """Finished fraction of the work, 0..1; 0 if it is stopped."""
         return 0.0 if self.is_stopped else min(self._frames / self._frame_count, 1.0)
 
     @property

@@ -1,8 +1,8 @@
 """Access to a glTF file: its document, the numbers of accessors, the files of pictures.
 
 pygltflib reads the document. The data are in the GLB file itself, in text within the document, or
-in files beside it. Numbers are returned decoded: normalized integers become shares, sparse rows are
-filled in, and interleaved rows are separated.
+in files beside it. Numbers are returned decoded: normalized integers become fractions, sparse rows
+are filled in, and interleaved rows are separated.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 and 4, and its registry of extensions.
 Differs from it: an accessor of matrices holds only matrices of 4 x 4 floats.
@@ -174,7 +174,7 @@ def entry(part: Any, name: str) -> Any:
 
 
 def shares(rows: npt.NDArray[Any]) -> Floats64:
-    """Integers as shares of their greatest value: 0 to 1, or signed -1 to 1."""
+    """Integers as fractions of their greatest value: 0 to 1, or signed -1 to 1."""
     greatest = np.iinfo(rows.dtype).max
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)
 

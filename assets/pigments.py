@@ -53,7 +53,7 @@ def changes_of(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats
 
 
 def paleness_of_lips(pale: float, density: Floats64) -> Floats64:
-    """Additional density of lips that lack a share of the skin's additional melanin, shape (3,).
+    """Additional density of lips that lack a fraction of the skin's additional melanin, shape (3,).
 
     Blood shows where melanin is missing, so such lips are pinker, not the colour of lighter skin.
     """

@@ -163,7 +163,7 @@ class Rules:
         return fields
 
     def undefined_edges(self) -> npt.NDArray[np.bool_]:
-        """Edges without a direction to compare with at rest; the paper's criterion splits none.
+        """Edges whose normals are undefined at rest; the paper's criterion never splits them.
 
         Shape (E,).
         """

@@ -121,7 +121,7 @@ def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
-    """Return lines (n, FIBRE_POINTS, 3), moved toward the skin near their points by shares (n,)."""
+    """Return lines (n, FIBRE_POINTS, 3), moved toward the skin near them by fractions (n,)."""
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
@@ -350,7 +350,7 @@ def carry_line(
 
 @njit
 def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved: Floats64) -> None:
-    """Carry the points of a line by its bones; `share`: that of the mandible, by point."""
+    """Carry the points of a line by its bones; `share`: the mandible's weight at each point."""
     turn = mandible.rotation
     shift = mandible.shift
     for p in range(len(points)):
@@ -364,7 +364,7 @@ def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved
 
 @njit
 def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats64) -> None:
-    """Fill `displacement` (SAMPLES, 3) along a fibre that loses the share `lost` of its length."""
+    """Fill `displacement` (SAMPLES, 3) along a fibre that loses a fraction `lost` of its length."""
     samples = len(displacement)
     count = len(moved)
     arc = np.empty(count)

@@ -3,10 +3,11 @@
 Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But the
 triangle between three vertices is flat, and the cornea protrudes from the ball, so triangles of a
 coarse mesh would intersect the ball. So the lids are closed once when a face is built. If a
-triangle then intersects the eyeball, its corners on the upper lid move outward, each by its share
-in the deepest point. The lower lid hardly moves when it closes, and keeps its form.
+triangle then intersects the eyeball, its corners on the upper lid move outward, each by its
+barycentric weight at the deepest point. The lower lid hardly moves when it closes, and keeps its
+form.
 
-Source: own; projection by shares as in Müller et al. 2007, "Position based dynamics", section 3.
+Source: own; projection by weights as in Müller et al. 2007, "Position based dynamics", section 3.
 """
 
 from __future__ import annotations

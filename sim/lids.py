@@ -2,7 +2,7 @@
 
 Each lid vertex turns about the axis through the centre of the eyeball that runs from corner to
 corner of the eye. Angles are measured per column of the eye opening (between its corners). Each
-vertex has the angle that brings it to the line where the lids meet (`closing`), and a share in the
+vertex has the angle that brings it to the line where the lids meet (`closing`), and a weight in the
 motion of the open lid (`fold`). It turns by
 
     close closing + (1 - close) fold (raise + gaze)
@@ -67,7 +67,7 @@ def place_lids(
     eyeballs: tuple[Eyeball, ...],
     names: list[str],
 ) -> Lids:
-    """Find the lids of each eye, and the share of each vertex in their motion.
+    """Find the lids of each eye, and the weight of each vertex in their motion.
 
     names: of all controls in their order, to find the lid muscles' activations.
     """

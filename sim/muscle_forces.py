@@ -1,7 +1,7 @@
 """From contraction values to forces: one anchor per skin vertex, summed over active muscles.
 
 A spring of stiffness k w A ties every attached vertex to its muscle (k of the muscle, attachment
-weight w, skin area A). At activation a the stiffness grows from a passive share p to its full
+weight w, skin area A). At activation a the stiffness grows from a passive fraction p to its full
 value, and the far end is displaced:
 
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
@@ -12,7 +12,7 @@ on others, r also moves with the mean displacement of its fibres by those others
 (muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
 same for one muscle and for fifty.
 
-Source: Kähler et al. 2001, section 4; the passive share is our own, fitted to half activations.
+Source: Kähler et al. 2001, section 4; the passive fraction is our own, fitted to half activations.
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ class MuscleForces:
     ) -> None:
         """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
 
-        activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
+        activation: of each muscle, shape (M,); weight: the mandible's weight at each vertex, shape
+        (V,).
         """
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         gather(state, activation, self.skin, mandible.rotation, weight)

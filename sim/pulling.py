@@ -6,7 +6,7 @@ change, and the rest of the face should not move. Minimise, over the controls u 
     sum_i s_i |A (t_i - p_i)|^2 + REST_WEIGHT sum_j a_j |p_j - p_j(0)|^2
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
-i runs over the vertices under the finger, with targets t and shares s that add up to 1; d is the
+i runs over the vertices under the finger, with targets t and weights s that add up to 1; d is the
 mean distance to the targets. j runs over all other vertices, with areas a relative to that under
 the finger. A reduces distances along the line of sight, which a mouse does not determine. Prices
 keep controls moderate. Few controls are used: first the control that reduces the sum most, then the

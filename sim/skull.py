@@ -80,7 +80,7 @@ class Eyeball:
 
     @property
     def gaze_share(self) -> float:
-        """Share of a gaze by which ball and lids turn.
+        """Factor on a gaze, by which ball and lids turn.
 
         Iris and lids of a larger ball move as far as on a human ball, because artists put larger
         balls behind openings of human width.

@@ -371,7 +371,7 @@ def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
 
 @njit
 def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
-    """Remove the part of a vertex's velocity that points against the way out."""
+    """Remove the component of a vertex's velocity that points against `out`, the way out."""
     dx, dy, dz = out
     squared = dx * dx + dy * dy + dz * dz
     approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)

@@ -32,7 +32,7 @@ class Teeth(NamedTuple):
     least: Floats64  # (C,) least distance from the axis, 1 = the arch
 
     def deepest(self, x: Floats64, mandible: RigidMotion) -> float:
-        """Greatest depth of skin at `x` (V, 3) in the teeth, minus the depth at rest [mm]."""
+        """Greatest depth of the skin `x` (V, 3) inside the teeth, minus the depth at rest [mm]."""
         if not len(self.vertex):
             return 0.0
         points = x[self.vertex]

@@ -2,7 +2,7 @@
 
 Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image outside
 the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor depth d,
-stiffness k and pre-tension share p of each spring, the force of the pair is
+stiffness k and pre-tension p of each spring (a fraction), the force of the pair is
 
     force = -A [ kt (I - n n^T) + kn n n^T ] (x - r),      kn = 2 k,  kt = 2 k p
 
@@ -128,7 +128,7 @@ def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats
 def carry(
     state: State, rest: Floats64, normals: Floats64, weight: Floats64, mandible: RigidMotion
 ) -> None:
-    """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
+    """Move the far ends of the tissue springs with the mandible, each vertex by its weight."""
     carried = state.carried
     carried_normals = state.normals
     turn = mandible.rotation

@@ -48,7 +48,7 @@ class Tongue:
     lips: Integers64  # vertex numbers of the landmarks LIPS
 
     def bent(self, out: float, up: float, x: Floats64, mandible: RigidMotion) -> Floats64:
-        """The vertices for tongue_out and tongue_up, 0..1, shape (T, 3).
+        """The vertices of the bent tongue, shape (T, 3); out, up: tongue_out and tongue_up, 0..1.
 
         x: the skin now, shape (V, 3); mandible: its current motion.
         """

@@ -105,7 +105,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
 
 
 def chosen(random: np.random.Generator, shares: Shares) -> str:
-    """Return a random name; its probability is proportional to its share."""
+    """Return a random name; its probability is proportional to its weight."""
     weights = np.array(list(shares.values()))
     return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
 

@@ -1,4 +1,4 @@
-"""Make shares of a set: the samples that one process makes, on this computer or a Dask worker.
+"""Make shares of a set: each is made by one process, on this computer or on a Dask worker.
 
 A worker that can reach the folder of the set writes into it. Other workers make samples in a
 temporary folder, and send the bytes back.

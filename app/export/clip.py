@@ -61,7 +61,7 @@ class Clip:
         return np.arange(self.frame_count) / self.frames_per_second
 
     def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
-        """Make a refiner of the skin. splits: per edge, (E,), in place of the criterion."""
+        """Make a refiner of the skin. splits: for each edge, (E,), instead of by the criterion."""
         return refiner_for(self.scene, refinement, splits)
 
     def refined(

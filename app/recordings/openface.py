@@ -1,9 +1,9 @@
 """OpenFace's CSV (1 and 2): action units 0 to 5, head pose, and gaze in the camera's axes.
 
-Source: OpenFace's wiki, "Output Format". The camera's x points to the subject's left, y down:
-pose_Rx + is down, pose_Ry + to the subject's right, pose_Rz + to the subject's left shoulder;
-gaze x + is to the subject's left, y + down; all in radians. Left and right muscles have one
-value.
+Source: OpenFace's wiki, "Output Format". The camera's x points to the subject's left, y points
+down. Positive pose_Rx is down, pose_Ry to the subject's right, pose_Rz to the subject's left
+shoulder; positive gaze x is to the subject's left, y down. All angles are in radians. Left and
+right muscles have one value.
 """
 
 from __future__ import annotations

@@ -79,8 +79,8 @@ class Sums:
     def pairs(self) -> list[tuple[str, str]]:
         """Pairs of shapes that may occur together.
 
-        Opposite shapes, such as a look up and a look down, are left out. So are shapes that are
-        shares of other shapes.
+        Opposite shapes, such as a look up and a look down, are left out. So are shapes whose
+        control has `share_of`.
         """
         shares = self._scene.simulation.controls.tables.share_of
         names = [name for name in self._displacements if name not in shares]
@@ -134,7 +134,7 @@ def worth_correcting(
 ) -> list[tuple[str, str]]:
     """Return at most `count` pairs of shapes whose sums have the greatest errors, greatest first.
 
-    TRIED times `count` pairs are simulated, namely those that share most skin.
+    TRIED times `count` pairs are simulated: those whose shapes have most skin in common.
     """
     sums = Sums(scene, poses)
     tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]

@@ -102,7 +102,7 @@ def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
 def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str, float]]:
     """Return the controls of a shape's pose, and of its reference pose.
 
-    If a control is a share of another control, such as `mouthClose` of `jawOpen`, the other control
+    If a control is relative to another control, as `mouthClose` is to `jawOpen`, the other control
     is 1 in both poses.
     """
     whole = scene.simulation.controls.tables.share_of.get(name)

@@ -39,7 +39,7 @@ class Easing(NamedTuple):
         return _WORDS.get(self) or free_easing(*self.slopes)
 
     def of(self, fraction: float) -> float:
-        """Return the share of the value's change at a fraction of the time; both are 0 to 1."""
+        """Return the fraction of the value's change at a fraction of the time; both are 0 to 1."""
         if self.is_held:
             return fraction // 1.0
         return hermite(fraction, *self.slopes)
@@ -65,7 +65,7 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
 
 
 def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
-    """Return shares of changes at fractions of the time, both (N,); rows: easings, (N, 3)."""
+    """Return fractions of changes at fractions of the time, both (N,); rows: easings, (N, 3)."""
     start = rows[:, 0] / 10
     end = rows[:, 1] / 10
     return np.where(rows[:, 2], fractions // 1.0, hermite(fractions, start, end))

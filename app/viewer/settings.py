@@ -162,7 +162,7 @@ class Display(Record):
 
     @property
     def share(self) -> float:
-        """The part of the picture at the left of a comparison's line, as a share of the width."""
+        """The width of a comparison's left part, as a fraction of the picture's width."""
         return self.divider if self.compare == "wipe" else 0.5
 
     def toggle_overlay(self, name: str) -> None:

@@ -144,7 +144,7 @@ class PersonSpace:
     anatomy: Mapping[str, int]
 
     def moved(self, weights: Floats64) -> Floats64:
-        """Return displacements of the vertices from the mean [mm], (V, 3), by weights (k,)."""
+        """Return displacements of the vertices from the mean [mm], (V, 3), for weights (k,)."""
         return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:

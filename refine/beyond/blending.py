@@ -178,7 +178,7 @@ def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.fl
 
 @njit
 def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, Vector]:
-    """Return the shares of corners, and of edge displacements, in the middle of a triangle.
+    """Return the weights of corners, and of edge displacements, for the middle of a triangle.
 
     `x`, `y`, `z`: geomorph weights of the edges; they determine the weights of the three rules
     above.
@@ -211,7 +211,7 @@ def displaced(
     middle: np.uint32,
     column: int,
 ) -> Vector:
-    """Move a point by a share of the vector from the mean of two rows to the row `middle`."""
+    """Move a point by a fraction of the vector from the mean of two rows to the row `middle`."""
     straight = plus(row_of(rows, ends[0], column), row_of(rows, ends[1], column))
     out = less(row_of(rows, middle, column), HALF, straight)
     return plus(centre, times(share_of_edge, out))

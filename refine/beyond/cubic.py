@@ -19,7 +19,7 @@ outline. Beside a corner of the border only the far end has a tangent, and the c
 A chord as the tangent at the corner would make the curve flatter than skin is.
 
 The *displacement* of a point is the vector from its place on the straight edge to the curve. Points
-of split edges are moved by the share of it that their geomorph weights give (blending.py):
+of split edges are moved by the displacement times their geomorph weight (blending.py):
 
                  .  m  .                 m      =  (a + b) / 2          +  displacement
               n           n              n at a =  (3 a + b) / 4        +  displacement

@@ -47,7 +47,7 @@ def plus(u: Vector, v: Vector) -> Vector:
 
 @njit
 def less(u: Vector, share: Any, v: Vector) -> Vector:
-    """Return vector u minus a share of v."""
+    """Return vector u minus `share` times v."""
     return u[0] - share * v[0], u[1] - share * v[1], u[2] - share * v[2]
 
 
@@ -59,7 +59,7 @@ def times(share: Any, v: Vector) -> Vector:
 
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
-    """The vector at a share of the way from start to end; exactly one of them at 0 and at 1."""
+    """Interpolate linearly from start (share 0) to end (share 1); exact at both."""
     if share == ONE:  # without blending, points are always at their final positions
         return end
     return plus(times(ONE - share, start), times(share, end))

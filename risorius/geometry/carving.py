@@ -19,8 +19,8 @@ def carve(
     length of one unit across [mm], and the visibility of lines, 0 to 1; shape (h, w, 4). courses,
     depths: coordinate across and depth [mm] of each line at its samples, shape (n, s). forms: for
     each line the half width of its furrow [mm], the half width of the broad trough around it [mm],
-    and the trough's depth as a share of the furrow's, shape (n, 3). heights, furrows: [mm], shape
-    (h, w); written.
+    and the trough's depth as a fraction of the furrow's, shape (n, 3). heights, furrows: [mm],
+    shape (h, w); written.
     """
     for row in range(texels.shape[0]):
         for column in range(texels.shape[1]):

@@ -24,7 +24,7 @@ class Absorbed(NamedTuple):
 
 
 class Hairs(NamedTuple):
-    """A person's painted hair: its colour, and its share of each texel."""
+    """A person's painted hair: its colour, and the fraction of each texel that it covers."""
 
     light: Floats32  # (3,), linear
     grey: Floats32  # shares of grey on the scalp, and elsewhere, (2,)
@@ -44,7 +44,7 @@ class Grown(NamedTuple):
 
 @njit
 def absorb(absorbed: Absorbed, first: int, exponents: Floats32) -> None:
-    """Write natural logarithms of the share of light that skin reflects, (3, rows, W).
+    """Write natural logarithms of the fraction of light that skin reflects, (3, rows, W).
 
     first: the row of the maps that is the first row of `exponents`.
     """
@@ -76,9 +76,10 @@ def compose(
 ) -> None:
     """Write rows of a picture (H, W, 3), from row `first` on.
 
-    left: share of light that skin reflects, (3, rows, W). light: of skin without pigments, linear,
-    (3, H, W). skin: light of bare skin, which replaces removed hair, (3,); former: share of the
-    removed hair, (H, W). table: the byte for each step of the square root of light.
+    left: fraction of light that skin reflects, (3, rows, W). light: of skin without pigments,
+    linear, (3, H, W). skin: light of bare skin, which replaces removed hair, (3,); former: fraction
+    of each texel that the removed hair covered, (H, W). table: the byte for each step of the square
+    root of light.
     """
     width = left.shape[2]
     haired = np.empty(width, np.float32)

@@ -61,7 +61,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 
 
 def chord(key: str) -> int:
-    """Return imgui's number of a key with its modifiers."""
+    """Return imgui's key chord: a key with its modifiers, as one number."""
     *modifiers, last = key.split("+")
     return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
 

@@ -141,9 +141,10 @@ def button(
 
 @contextlib.contextmanager
 def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool]:
-    """Begin a dialog in the middle of the window; yield whether it is open for the block.
+    """Begin a dialog in the middle of the window; yield whether it is open.
 
-    The block ends it by `imgui.close_current_popup`. width, height: [em], 0 for the content's size.
+    The `with` block ends it by `imgui.close_current_popup`. width, height: [em], 0 for the
+    content's size.
     """
     display = imgui.get_io().display_size
     if not imgui.is_popup_open(title):

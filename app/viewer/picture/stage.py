@@ -38,7 +38,7 @@ class SceneView:
     """One view of a session's scene.
 
     area: the scene's part of the window: left, top, width, height [window units].
-    pointed: the muscles of the control under the mouse, with their shares.
+    pointed: the muscles of the control under the mouse, with their weights.
     hovered: the muscle of the skin under the mouse; None beside the skin.
     """
 
@@ -229,10 +229,10 @@ class Stage:
 def pointed_lines(
     scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
 ) -> list[render.Lines]:
-    """Return the fibres of a control's muscles; muscles with larger shares are more opaque.
+    """Return the fibres of a control's muscles; muscles with larger weights are more opaque.
 
-    shares: name of a muscle -> its share; a name without side means both sides. clarity: the
-    opacity of the muscle with the largest share.
+    shares: name of a muscle -> its weight; a name without side means both sides. clarity: the
+    opacity of the muscle with the largest weight.
     """
     face = scene.face if shares else None
     fibres = {} if face is None else face.simulation.anatomy.courses()

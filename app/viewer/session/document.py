@@ -51,7 +51,7 @@ class SceneControls:
 
 
 class LiveOverride:
-    """Overrides controls by a live face, with a share of 0 (no effect) to 1 (full replacement)."""
+    """Overrides controls by a live face, with a weight of 0 (no effect) to 1 (full replacement)."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -59,7 +59,7 @@ class LiveOverride:
         self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
-        """Set the overriding controls and their share; unknown names are left out."""
+        """Set the overriding controls and their weight; unknown names are left out."""
         if (names := tuple(controls)) != self._names:  # a stream has the same names in each frame
             self._names = names
             self._known = tuple(name for name in names if name in self._limits)

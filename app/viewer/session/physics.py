@@ -92,7 +92,7 @@ class Clock:
     def steps(self, elapsed: float, early: float = EARLY_SHARE) -> int:
         """Return the number of due steps after `elapsed` more seconds, MOST_STEPS at most.
 
-        early: share of its length by which a step may be taken early.
+        early: fraction of its length by which a step may be taken early.
         """
         self._owed += max(elapsed, 0.0)
         due = max(int(self._owed / STEP + early), 0)
