@@ -167,7 +167,7 @@ class Placing:
 
 @dataclass(frozen=True)
 class MaterialLook:
-    """Numbers of a material: its colour in linear light, 0 to 1, and its opacity."""
+    """Colour of a material in linear light, 0 to 1, and its opacity."""
 
     colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
     opacity: float = 1.0

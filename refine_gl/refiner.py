@@ -133,12 +133,12 @@ class KahlerGl(BaseRefiner, GpuRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, three points on every attribute edge, and centres."""
+        """Greatest number of output vertices: wedges, 3 points per attribute edge, and centres."""
         return self._tables.sizes["most_rows"]
 
     @property
     def triangle_capacity(self) -> int:
-        """Most output triangles: the longest row of the table for each."""
+        """Greatest possible number of output triangles, by the longest row of the table."""
         return self._tables.sizes["most_subtriangles"] * len(self.connectivity.faces)
 
     @property

@@ -157,8 +157,8 @@ def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
     """Cut a mesh's surface into triangles, shape (F, 3); also return the cell of each, (F,).
 
     Lines, lone points and polygons of fewer than three points have no surface and are left out.
-    Only polygons of more than three points go through VTK's filter, because it returns unwritten
-    memory for lines and lone points. Raises ValueError for cells with missing points.
+    Only polygons of more than three points go through VTK's filter, because it returns
+    uninitialised memory for lines and lone points. Raises ValueError for cells with missing points.
     """
     polygons = _cells_of(mesh.GetPolys(), mesh.n_points)
     strips = _cells_of(mesh.GetStrips(), mesh.n_points)

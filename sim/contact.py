@@ -51,7 +51,7 @@ class LipPairs(NamedTuple):
         return apart
 
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
-        """Greatest depth of crossing lips at positions (V, 3), beyond `pressed` and rest [mm].
+        """Greatest depth of crossing lips at positions (V, 3), minus `pressed` and rest depth [mm].
 
         A lower lip in front of the upper lip, or rolled in behind it (substep.py), does not count.
         """

@@ -32,7 +32,7 @@ class LidAxes(NamedTuple):
         return np.arctan2(away @ self.up, away @ self.forward)
 
     def column(self, points: Floats64) -> Floats64:
-        """Place from the outer corner of the eye, 0, to the inner one, 1."""
+        """Fraction of the way from the outer corner of the eye (0) to the inner corner (1)."""
         column: Floats64 = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
         return column
 

@@ -30,8 +30,9 @@ def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) 
     Skin of the fold is farther from the eyeball than the margin. Without this sinking, a closed lid
     would form a pouch in front of the ball that hangs over the lashes.
 
-    x: vertices at rest (V, 3). column: places from the outer corner of the eye, 0, to the inner
-    one, 1, shape (V,). share: how far each vertex follows the turn of the margin, shape (V,).
+    x: vertices at rest (V, 3). column: fractions of the way from the outer corner of the eye (0) to
+    the inner corner (1), shape (V,). share: how far each vertex follows the turn of the margin,
+    shape (V,).
     """
     thickness = 2.2  # [mm] of skin, muscle and plate, from the eyeball to the front of a lid
     most_sunk = 5.0  # [mm]

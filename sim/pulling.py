@@ -7,13 +7,14 @@ change, and the rest of the face should not move. Minimise, over the controls u 
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
 i runs over the vertices under the finger, with targets t and weights s that add up to 1; d is the
-mean distance to the targets. j runs over all other vertices, with areas a relative to that under
-the finger. A reduces distances along the line of sight, which a mouse does not determine. Prices
-keep controls moderate. Few controls are used: first the control that reduces the sum most, then the
-control that reduces it most together with the first, and so on, by slopes at the start. So the
-controls depend only on the targets, not on the path of the finger: the pose during the motion is
-the pose that stays. A target beyond the reach of the strongest control in this direction is moved
-back to that reach, because prices grow with d: farther out no control would be worth its price.
+mean distance to the targets. j runs over all other vertices, with areas a relative to the area
+under the finger. A reduces distances along the line of sight, which a mouse does not determine.
+Prices keep controls moderate. Few controls are used: first the control that reduces the sum most,
+then the control that reduces it most together with the first, and so on. The slopes at the start
+decide this. So the controls depend only on the targets, not on the path of the finger: the pose
+during the motion is the pose that stays. A target beyond the reach of the strongest control in this
+direction is moved back to that reach, because prices grow with d: farther out no control would be
+worth its price.
 
 Because of prices and of the rest of the face, the skin does not quite reach the mouse. So in the
 end all changes are multiplied by one factor, until the finger's middle is as near to the mouse as

@@ -91,7 +91,7 @@ Point = Annotated[LandmarkPoint, MadeFrom(_PointTable, _PointTable.point)]
 
 @dataclass(frozen=True)
 class Tissue(Record):
-    """Uniform skin and soft tissue; stiffness is per skin area and relative to the scale."""
+    """Uniform skin and soft tissue; stiffness is per skin area, times `stiffness_scale`."""
 
     tangential: Annotated[float, Within(0.0, 100.0)] = 0.19  # resistance to sliding over the bone
     normal: Annotated[float, Within(0.0, 1000.0)] = 7.6  # resistance to sinking in or lifting off

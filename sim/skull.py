@@ -48,7 +48,7 @@ class RigidMotion(NamedTuple):
 
     @classmethod
     def about(cls, pivot: Floats64, rotation: Floats64) -> RigidMotion:
-        """Turn about `pivot`."""
+        """Make a rotation about `pivot`, (3,) [mm], by a matrix (3, 3)."""
         return cls.of(rotation, pivot - rotation @ pivot)
 
     def displacements(self, points: Floats64) -> Floats64:

@@ -189,7 +189,7 @@ def export(
     frames_per_second: float = 30.0,
     span: tuple[float, float] | None = None,
 ) -> tuple[str, str | None]:
-    """Play a script, or a span of it [s], and write the clip; return a line and a remark."""
+    """Play a script, or its `span` [s], and write the clip; return a line, and a remark or None."""
     from ..motion import scene_of
     from .clip import record
     from .refined import with_refined_skin

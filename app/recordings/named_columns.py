@@ -32,7 +32,7 @@ OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 
 @dataclass
 class Columns:
-    """The channels of a table's columns: channel -> number of the column."""
+    """The channels of a table's columns: channel -> index of the column."""
 
     shapes: dict[str, int] = field(default_factory=dict)
     units: dict[str, int] = field(default_factory=dict)

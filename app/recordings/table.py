@@ -125,7 +125,7 @@ class Table:
 
     @property
     def places(self) -> dict[str, int]:
-        """Name in lower case -> number of the first column with this name."""
+        """Name in lower case -> index of the first column with this name."""
         return {name.casefold(): number for number, name in reversed([*enumerate(self.names)])}
 
     def cells(self, column: int) -> list[str]:

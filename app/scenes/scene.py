@@ -41,7 +41,7 @@ class Scene(Drawable):
     def moved_by(self, name: str) -> Mapping[str, float]:
         """Return the controls of the lowest layer that a control moves, and their greatest changes.
 
-        A control of the lowest layer moves only itself. A change is without sign, for the highest
-        value of the control.
+        A control of the lowest layer moves only itself. A change is an absolute value, at the
+        highest value of the control.
         """
         return {name: 1.0}

@@ -167,7 +167,7 @@ class CubicScheme(Scheme):
         share(place_mean_normals, count, self._around.points, frame, self._normals)
 
     def place_positions(self, frame: FrameBuffers) -> None:
-        """Do the same without normals."""
+        """Write positions only, as `place` does."""
         count = len(frame.points) + int(frame.counts[ONCE])
         share(place_on_curves, count, self._around.points, frame, self._rows)
 

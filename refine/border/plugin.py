@@ -164,12 +164,12 @@ class Refiner(Protocol):
     @property
     @abstractmethod
     def vertex_capacity(self) -> int:
-        """Most output vertices a frame can have."""
+        """Greatest number of output vertices of a frame."""
 
     @property
     @abstractmethod
     def triangle_capacity(self) -> int:
-        """Most output triangles a frame can have."""
+        """Greatest number of output triangles of a frame."""
 
     @property
     def vertex_columns(self) -> int:

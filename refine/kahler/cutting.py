@@ -30,7 +30,7 @@ class Cutting:
     def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
         """Bind the mesh; return the array of each triangle's row in the table, shape (F,).
 
-        The array may be longer.
+        The array may have more than F entries.
         """
         return frame.configurations
 

@@ -79,7 +79,7 @@ class SplitsEdges(Protocol):
 def splits_of_clip(
     refiner: SplitsEdges, frames: Iterable[npt.NDArray[np.floating]], view: View | None = None
 ) -> Unsigned8:
-    """Refine all frames; return the most splits that any frame has at each edge, shape (E,).
+    """Refine all frames; return the largest number of splits of each edge, shape (E,).
 
         changing = refine.create("kahler", faces, rest)
         splits = refine.splits_of_clip(changing, frames)

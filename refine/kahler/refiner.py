@@ -109,9 +109,9 @@ class Kahler(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, three points on every attribute edge, and centres.
+        """Greatest number of output vertices: wedges, 3 points per attribute edge, and centres.
 
-        If the criterion never changes, this is the exact number of a frame.
+        If the criterion never changes, this is the exact number in every frame.
         """
         if self.topology is not None:
             return self.topology.vertex_count
@@ -121,9 +121,9 @@ class Kahler(BaseRefiner):
 
     @property
     def triangle_capacity(self) -> int:
-        """Most output triangles: the longest row of the table for each.
+        """Greatest possible number of output triangles, by the longest row of the table.
 
-        If the criterion never changes, this is the exact number of a frame.
+        If the criterion never changes, this is the exact number in every frame.
         """
         if self.topology is not None:
             return len(self.topology.triangles)

@@ -55,7 +55,7 @@ class Scheme:
         """Correct the points in the middle of triangles, after blending has written them."""
 
     def outlined(self, connectivity: Connectivity) -> Flags:
-        """Edges within the surface that are outlines, as borders are, shape (E,): none."""
+        """Flags of interior edges that are outlines like borders, shape (E,); by default none."""
         return np.zeros(len(connectivity.edges), np.bool_)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:

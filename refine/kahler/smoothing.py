@@ -347,7 +347,7 @@ def place_kept(
     inside_count: int,
     middles: Floats32,
 ) -> None:
-    """Do the same for frames with the same splits; `kept`: the plain tuple of `KeptRows`."""
+    """Write what `place_by_loop` writes, for fixed splits; `kept`: plain tuple of `KeptRows`."""
     of_frame = FrameBuffers(*frame)
     matrix = KeptRows(*kept)
     rows = of_frame.rows

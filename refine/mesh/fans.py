@@ -35,7 +35,7 @@ def fans_of(mesh: Connectivity) -> Fans:
 def fans_around(
     faces: npt.NDArray[np.integer], edges: npt.NDArray[np.integer], vertex_count: int
 ) -> Fans:
-    """Do the same for triangles, shape (F, 3), and edges, (E, 2), of vertices or of sectors."""
+    """Sort corners of triangles (F, 3) and ends of edges (E, 2) by their vertices or sectors."""
     corner_starts, order = _by_vertex(faces, vertex_count)
     corners = (order // 3 * 4 + order % 3).astype(np.uint32)
     neighbour_starts, order = _by_vertex(edges, vertex_count)

@@ -38,13 +38,13 @@ def lanes_of(rows: Floats32, k: Number) -> Lanes:
 
 @njit(lanes=True)
 def sum_of(u: Lanes, v: Lanes) -> Lanes:
-    """Sum."""
+    """Sum of two vectors."""
     return u[0] + v[0], u[1] + v[1], u[2] + v[2], u[3] + v[3]
 
 
 @njit(lanes=True)
 def scaled(share: np.float32, v: Lanes) -> Lanes:
-    """Product with a number."""
+    """Product of a vector and a number."""
     return share * v[0], share * v[1], share * v[2], share * v[3]
 
 

@@ -96,7 +96,7 @@ def checked_indices(name: str, indices: npt.ArrayLike, limit: int, target: str) 
 def as_indices(
     name: str, indices: npt.ArrayLike, limit: int, target: str
 ) -> npt.NDArray[np.integer]:
-    """Do the same, without a copy where none is needed."""
+    """Return triangles as `checked_indices` does, without a copy where none is needed."""
     array = as_array(name, indices, "integers of shape (F, 3)")
     if array.shape in ((0,), (0, 3)):
         return np.zeros((0, 3), dtype=np.int64)
@@ -145,7 +145,7 @@ def take_positions(
 def take_positions_like_rest(
     positions: npt.ArrayLike, is_used: Flags, own: Floats64, points: Floats32
 ) -> None:
-    """Do the same for an array that has the shape and type of `own`, (V, 3)."""
+    """Copy positions as `take_positions` does, from an array of `own`'s shape (V, 3) and type."""
     given = np.asarray(positions)
     if given.shape != own.shape or given.dtype.kind != "f":
         raise ValueError(

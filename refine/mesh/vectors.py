@@ -41,7 +41,7 @@ def cross(u: Vector, v: Vector) -> Vector:
 
 @njit
 def plus(u: Vector, v: Vector) -> Vector:
-    """Sum."""
+    """Sum of two vectors."""
     return u[0] + v[0], u[1] + v[1], u[2] + v[2]
 
 
@@ -53,7 +53,7 @@ def less(u: Vector, share: Any, v: Vector) -> Vector:
 
 @njit
 def times(share: Any, v: Vector) -> Vector:
-    """Product with a number."""
+    """Product of a number and a vector."""
     return share * v[0], share * v[1], share * v[2]
 
 

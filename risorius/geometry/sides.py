@@ -11,7 +11,7 @@ def sides_of(faces: Integers) -> Integers:
 
 
 def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
-    """Return the distinct rows of pairs (n, 2) of numbers from 0, and the index of each pair, (n,).
+    """Return the distinct pairs of non-negative integers (n, 2), and each pair's index there, (n,).
 
     The distinct pairs, shape (k, 2), are sorted by the first number, then by the second.
     `np.unique` of rows takes ten times as long.

@@ -308,7 +308,7 @@ class LevelOfDetail:
 
     @property
     def unhurried(self) -> render.Detail:
-        """The detail for idle life, which hides missing pixels less than a motion does."""
+        """The detail for idle life, whose slow motion makes missing pixels more visible."""
         return LEVELS[min(self.level, COARSEST_IDLE_LEVEL)]
 
     def begin_motion(self) -> None:

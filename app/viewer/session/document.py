@@ -187,6 +187,6 @@ class History(Generic[State]):
         self._states[self.place] = state
 
     def go(self, place: int) -> State:
-        """Restore the state of this number, or of the nearest number."""
+        """Restore the state with this index, or with the nearest index."""
         self.place = min(max(place, 0), len(self._states) - 1)
         return self.present

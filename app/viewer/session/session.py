@@ -146,7 +146,7 @@ class Session:
         self.go_to(self.history.place + 1)
 
     def go_to(self, place: int) -> None:
-        """Restore the state of this number in the history."""
+        """Restore the state with this index in the history."""
         self._refuse_while_recording()
         document = self.history.go(place)
         self.is_playing = self._is_touched = False
@@ -182,7 +182,7 @@ class Session:
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
-        """Show the script's pose at a time. The message names the controls that this releases."""
+        """Show the script's pose at a time; the message names the controls that this resets."""
         self._refuse_while_recording()
         line = self.let_go()
         self._go_to(time)

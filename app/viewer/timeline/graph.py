@@ -139,7 +139,7 @@ class Graph:
         return handle if distance < em(self.MOUSE_REACH) else None
 
     def bent(self, handle: Handle, y: float) -> str:
-        """Return the easing of a segment after its handle is dragged to a height."""
+        """Return the easing of a segment whose handle was dragged to this y [window units]."""
         slopes = list(handle.slopes)
         (own, other) = map(self.y, handle.ends)
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
