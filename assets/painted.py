@@ -91,7 +91,7 @@ def _within(numbers: Integers64, count: int) -> Integers64:
 
 
 def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
-    """The materials of a surface, from those of its libraries that exist."""
+    """The materials of a surface, from its existing libraries."""
     looks: dict[str, MaterialLook] = {}
     pictures: dict[str, Any] = {}
     for name in libraries_of(surface.libraries, folder):

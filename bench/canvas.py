@@ -103,7 +103,7 @@ class Shot:
     image: Image
 
     def off(self, other: Shot) -> Floats64:
-        """Difference of each pixel from that of another picture [levels of 255], (H, W)."""
+        """Difference of each pixel from the one in another picture [levels of 255], (H, W)."""
         apart = self.image.astype(np.float64) - other.image
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 

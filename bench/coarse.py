@@ -123,7 +123,7 @@ class Comparison:
 def _angles_and_areas(
     mesh: refine.RefinedMesh, is_chosen: Flags, surface: Surface
 ) -> tuple[Floats64, Floats64]:
-    """Angle [degrees] of each triangle's normal to that of the nearest point, and areas."""
+    """Angle [degrees] between each triangle's normal and the nearest point's normal, and areas."""
     triangles = mesh.triangles[is_chosen].astype(np.int64)
     middles = mesh.positions[triangles].mean(axis=1)
     normals = unit_vectors(mesh.normals[triangles].mean(axis=1).astype(float))

@@ -54,7 +54,7 @@ class IdentitySpace:
     """Shape (V, 3)."""
     triangles: Faces
     landmarks: Faces
-    """The 68, as vertex numbers."""
+    """Vertex indices of the 68 landmarks."""
     modes: Points
     """Shape (k, V, 3); a weight of 1 is one standard deviation."""
 

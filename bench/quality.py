@@ -76,7 +76,7 @@ class Score(NamedTuple):
     method: str
     expression: str
     triangles: float
-    """Ratio of triangles to those of the coarse mesh."""
+    """Number of triangles relative to the coarse mesh."""
     distance: float
     """Root of the mean squared distance [mm]."""
     picture: float

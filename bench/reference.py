@@ -44,7 +44,7 @@ SHAPES = (
 )
 """The expressions for measurements."""
 LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
-"""The heading of the 68 vertex numbers in the checkout's README."""
+"""The heading of the 68 vertex indices in the checkout's README."""
 
 
 def make(checkout: Path, folder: Path) -> list[str]:

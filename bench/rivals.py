@@ -37,7 +37,7 @@ from .rival_libraries import METHODS, Faces, Frame, Method, Points, Surface
 from .subjects import Subject
 
 TIMES = 4.0
-"""Ratio of triangles of the refined mesh to those of the coarse one."""
+"""Number of triangles of the refined mesh relative to the coarse mesh."""
 
 
 class Case(NamedTuple):

@@ -53,7 +53,7 @@ class Scans:
 
     mesh: Mesh
     landmarks: Faces
-    """The 68, as vertex numbers."""
+    """Vertex indices of the 68 landmarks."""
     fields: Mapping[str, Points]
     """Expression -> displacement of all vertices, shape (V, 3)."""
 

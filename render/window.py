@@ -48,7 +48,7 @@ class WindowSurface(Surface):
         self.labels: Sequence[tuple[int, int, Image]] = ()
         self._compositor = Compositor(gl, size)
         self._is_resolved = False  # whether `resolve` was called in this frame
-        self._is_laid = False  # whether the compositor has the present scene
+        self._is_laid = False  # whether the compositor has the current scene
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property

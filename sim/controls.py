@@ -243,7 +243,7 @@ class MuscleDrive:
         self._whole = controls.places_in_reached(w if w in halved else "" for w in wholes)
 
     def activation(self) -> Floats64:
-        """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
+        """Activation 0..1 of each muscle, (M,): its own control plus the one for both halves."""
         reached = self._controls.reached
         return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 

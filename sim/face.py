@@ -144,7 +144,7 @@ class Simulation:
             )
 
     def _are_targets_there(self) -> bool:
-        """Whether activations are those of the placed targets, and no finger pulls the skin."""
+        """Whether targets are placed for these activations, and no finger pulls the skin."""
         if self._placed_for is None or self.touch.is_held:
             return False
         return bool((self._placed_for == self.controls.reached).all())

@@ -92,7 +92,7 @@ def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
 
 
 def _numbered(edges: Integers32, diagonal: Integers32, vertex_count: int) -> sparse.csr_array:
-    """A symmetric matrix that has the number of each edge, and E + i at i's place (n,)."""
+    """A symmetric matrix with the index of each edge, and E + i on the diagonal for vertex i."""
     i, j = edges.T
     places = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])
     numbers = np.arange(len(edges) + len(diagonal))

@@ -45,7 +45,7 @@ class Tongue:
     half: Floats64  # (SAMPLES,) half of the height
     lower_edge: Floats64  # (3,) of the lower incisors
     upper_edge: Floats64  # (3,) of the upper incisors, seen from the cranium
-    lips: Integers64  # vertex numbers of the landmarks LIPS
+    lips: Integers64  # vertex indices of the landmarks LIPS
 
     def bent(self, out: float, up: float, x: Floats64, mandible: RigidMotion) -> Floats64:
         """The vertices of the bent tongue, shape (T, 3); out, up: tongue_out and tongue_up, 0..1.

@@ -54,7 +54,7 @@ class _Steps:
         self._root = root
         self._steps: dict[str, list[Any]] = defaultdict(list)
         self._meshes: dict[str, list[int]] = defaultdict(list)
-        self._begins: dict[str, Any] = {}  # first rows of the present mesh
+        self._begins: dict[str, Any] = {}  # first rows of the current mesh
         root.attrs["Version"] = (2, 0)
         root.attrs["Type"] = np.bytes_("PolyData")
 

@@ -68,7 +68,7 @@ def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
 
 
 def lead_of(control: str, lead: float) -> float:
-    """Return the lead of a control [s], given that of muscles: in proportion to its lag."""
+    """Return the lead of a control [s], in proportion to its lag; given the lead of muscles."""
     # Lag of eyes and head [s]; the lag of muscles and skin is LEAD. All were measured at 60 Hz.
     lateness = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
     late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD)

@@ -29,7 +29,7 @@ from .surface import METRES
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex number
+SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex index
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
 
 
 def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
-    """Add the mesh of a file; eyeballs may be separate nodes. Returns the numbers of the nodes."""
+    """Add the mesh of a file; eyeballs may be separate nodes. Returns the indices of the nodes."""
     assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
     faces = file.body.faces

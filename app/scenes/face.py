@@ -52,7 +52,7 @@ class FaceScene(Scene):
         self.landmarks = self.head.landmarks
         self.called = BUILT_IN if isinstance(self.head, assets.Head) else self.head.called or OWN
         self._parts = _parts_of(self.head, rest, faces)
-        self._are_bent = False  # whether parts have the face's present shape
+        self._are_bent = False  # whether parts have the face's current shape
         self.framing = self._framing()
         controls = self.simulation.controls
         self.groups = controls.groups

@@ -176,7 +176,7 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
         )
 
     def marks_of(parted: Mesh) -> Marks:
-        """Return the known landmarks; those of parted inner lips get vertices of the right lip."""
+        """Return the known landmarks; inner lips that were parted get vertices of their own lip."""
         numbers = known.landmarks
         nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60

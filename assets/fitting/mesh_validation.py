@@ -45,8 +45,8 @@ class SkinPiece:
 
     vertices: Floats64  # (V, 3)
     faces: Integers32  # (F, 3)
-    landmarks: Integers32  # (68,) vertex numbers in this piece
-    file_vertices: Integers32  # (V,) vertex numbers in the whole mesh
+    landmarks: Integers32  # (68,) vertex indices in this piece
+    file_vertices: Integers32  # (V,) vertex indices in the whole mesh
     file_faces: Integers64  # (F,) triangle numbers in the whole mesh
     is_turned: bool = False  # whether the file's triangles faced inward
 

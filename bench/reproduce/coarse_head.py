@@ -42,7 +42,7 @@ class Cell(Shot):
 
     is_head: Flags
     smoother: float
-    """Angle between neighbouring triangles at split edges, over that of the mesh there."""
+    """Angle between neighbouring triangles at split edges, relative to the mesh there."""
 
     def wrong(self, truth: Cell) -> int:
         """Number of pixels that show the head here or in truth, but not in both."""

@@ -289,7 +289,7 @@ def _require(holds: bool, relation: str) -> None:
 def _require_all(
     holds: Flags, relation: str, numbers: npt.NDArray[np.integer] | None = None
 ) -> None:
-    """Raise with the relation and the number of the first row for which it does not hold."""
+    """Raise BrokenMeshError, which names the relation and the first row that violates it."""
     broken = np.flatnonzero(~holds)
     if len(broken):
         number = broken[0] if numbers is None else numbers[broken[0]]

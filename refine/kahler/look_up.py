@@ -23,7 +23,7 @@ from .table import CENTRE
 
 SIDE_BITS = np.uint32(2)
 SIDE_MASK = np.uint32(3)
-"""A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
+"""A side of an edge is 4 x triangle + the index of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 """Factors of the splits of a triangle's three edges in the number of its configuration."""
 

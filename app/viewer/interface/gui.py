@@ -238,7 +238,7 @@ class Gui:
         queue = self._context.input_events_queue
         count = queue.size()
         imgui.backends.glfw_new_frame()
-        # For a mouse that was not seen to enter the window, the backend adds its present place. An
+        # For a mouse that was not seen to enter the window, the backend adds its current place. An
         # earlier click would then be answered there.
         while self._is_answering and queue.size() > count:
             queue.pop_back()
@@ -335,7 +335,7 @@ def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
 def _set_colours(style: Any, theme: Theme) -> None:
     """Set calm colours for the panels, because the user looks at the face."""
     fresh = imgui.Style()
-    for name in dir(fresh):  # reset every size: scaling multiplies the present sizes
+    for name in dir(fresh):  # reset every size: scaling multiplies the current sizes
         size = getattr(fresh, name)
         if isinstance(size, (float, imgui.ImVec2)) and not name.startswith("font"):
             setattr(style, name, size)

@@ -157,7 +157,7 @@ class History(Generic[State]):
 
     def __init__(self, present: State) -> None:
         self._states = [present]
-        self.place = 0  # number of the present state
+        self.place = 0  # index of the current state
 
     @property
     def can_undo(self) -> bool:

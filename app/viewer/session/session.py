@@ -39,7 +39,7 @@ class Session:
         self.is_following = any(self.values.numbers)  # the script; not at first if it is neutral
         self._is_touched = False  # whether a control was moved by hand since the last `note`
         self._moved = set[str]()  # controls moved by hand since the face followed the script
-        self.recorder: Recorder | None = None  # recorder of the present recording
+        self.recorder: Recorder | None = None  # recorder of the current recording
         self.live_override = LiveOverride(scene.limits)  # not a part of undo
         self.history = History(self._document())
         self.work = Work(self)

@@ -35,7 +35,7 @@ class Timeline:
     def __init__(
         self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
     ) -> None:
-        """commands: the window's commands, which include those of the buttons."""
+        """commands: the window's commands, which include the buttons' commands."""
         self._gui = app.gui
         self._session = app.session
         self._messages = app.messages

@@ -30,7 +30,7 @@ class Schedule:
         self._file_drop = file_drop
         self._mode = mode
         self._due_in = due_in
-        self._begun = time.perf_counter()  # start time of the present frame [s]
+        self._begun = time.perf_counter()  # start time of the current frame [s]
         self._awake = self.FRAMES_AFTER_EVENT  # number of frames to draw because of an event
 
     def restart(self) -> None:
