@@ -5,13 +5,13 @@ muscles, and lets the built-in head settle in each pose. It counts inverted tria
 turned by more than a right angle against the skin around them. It measures the depth of skin inside
 the other lip, an eyeball or the teeth.
 
-For action units, and expressions in which the mouth or an eye is shut, it also reports two gaps:
-the widest slit between lips that no muscle opens, and the greatest visible height of a shut
-eyeball, or of the open space beside the eyeball. The views cover the whole front: 60 degrees to
-either side, and 40 up and down. The mesh and the refined mesh are both measured, because smoothing
-thins a folded lip a little; the larger gap counts. Gaps are measured by lines of sight, not by
-distances between vertices: a gap without a line of sight does not count, and a gap may lie between
-two touching vertices.
+Action units and expressions in which the mouth or an eye is shut have two more measures. The first
+is the widest slit between lips that no muscle opens. The second is the greatest visible height of a
+shut eyeball, or of the open space beside it. The views cover the whole front: 60 degrees to either
+side, and 40 up and down. The mesh and the refined mesh are both measured, because smoothing thins a
+folded lip a little; the larger gap counts. Gaps are measured by lines of sight, not by distances
+between vertices: a gap without a line of sight does not count, and a gap may lie between two
+touching vertices.
 """
 
 from __future__ import annotations

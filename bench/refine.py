@@ -2,10 +2,11 @@
 
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the timed span
 runs from positions to a filled stream and includes everything: normals, criterion, points, table
-look-up, output and the call from Python. The meshes are the built-in face in six full expressions,
-with the default thresholds, and large grids of jittered squares under travelling waves, with
-thresholds that split 10, 50 or 100 % of the edges. The grids are flat at rest, so every edge bends
-in the waves. Wave lengths are given in cells, so edges bend equally in small and large meshes.
+look-up, output and the call from Python. There are two kinds of meshes. The built-in face is in six
+full expressions, with the default thresholds. Large grids of jittered squares are under travelling
+waves, with thresholds that split 10, 50 or 100 % of the edges. The grids are flat at rest, so every
+edge bends in the waves. Wave lengths are given in cells, so edges bend equally in small and large
+meshes.
 
 The methods of a mesh run interleaved, in alternating order, with garbage collection off, and
 medians are reported. On a shared machine, times drift by a third within a run. So only rows of one

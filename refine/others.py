@@ -13,8 +13,8 @@ Its rules are those of Loop 1987 with Warren's vertex weights (Warren 2001). Kä
 borders follow their own curve. The connectivity of each level is built at binding; a frame only
 moves points, by the passes of `kahler`.
 
-Normals and texture coordinates of new points are interpolated along the edge and not recomputed
-from the subdivided surface, as in `kahler`, so that the two can be compared in shading and in time.
+Normals and texture coordinates of new points are interpolated along the edge, as in `kahler`, and
+not recomputed from the subdivided surface. So both can be compared in shading and in time.
 
 Differs from `kahler` with all edges split twice: a triangle becomes sixteen, not ten, with three
 points in its interior, and the second level smooths all vertices of the first.

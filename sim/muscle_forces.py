@@ -6,11 +6,11 @@ value, and the far end is displaced:
 
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
 
-r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
-the displacement that is linear in a (rings, bulge, convergence to the fibre line). If a muscle lies
-on others, r also moves with the mean displacement of its fibres by those others, weighted by w_f
-(muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
-same for one muscle and for fifty.
+Here r is the rest position carried by the bones, and u_f is the pull of fibre f at the vertex
+(fibres.py). d is the displacement that is linear in a: rings, bulge, convergence to the fibre line.
+If a muscle lies on others, r also moves with the mean displacement of its fibres by those others,
+weighted by w_f (muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so
+substeps cost the same for one muscle and for fifty.
 
 Source: Kähler et al. 2001, section 4; the passive fraction is our own, fitted to half activations.
 """

@@ -2,9 +2,9 @@
 
 A row of the rig names the muscles that a muscle lies on (`lies_on`). Each control point of its
 lines is attached to each of those muscles as skin is (muscles.py), but to one line only, the one
-with the greatest weight. Let w be this weight, u the displacement along the contracting line at the
-point's foot, s the bulge there with the other terms that are linear in the activation a, and o' the
-displacement of that line by the muscles beneath it. The point moves by
+with the greatest weight. Let w be this weight. The foot of the point on the line has three
+displacements: u along the contracting line; a s by the bulge and the other terms that are linear in
+the activation a; and o' by the muscles beneath that line. The point moves by
 
     o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
 

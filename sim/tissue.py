@@ -6,9 +6,9 @@ stiffness k and pre-tension p of each spring (a fraction), the force of the pair
 
     force = -A [ kt (I - n n^T) + kn n n^T ] (x - r),      kn = 2 k,  kt = 2 k p
 
-to first order. We use this linearised pair instead of the two springs: it has no rest-length
-singularity when skin slides far (a smile moves skin by more than the thickness of tissue), and
-needs no square root. n turns with the bone.
+to first order. We use this linearised pair instead of the two springs. It needs no square root, and
+has no rest-length singularity when skin slides far: a smile moves skin by more than the thickness
+of tissue. n turns with the bone.
 
 The skin itself is a membrane. Every edge is a spring with the rest length of the undeformed mesh.
 Its stiffness follows from the adjacent triangle areas (Van Gelder), so the membrane does not depend

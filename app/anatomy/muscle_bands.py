@@ -3,8 +3,8 @@
 The simulation's fibres at rest give the courses of linear muscles. The fibres of sphincters are
 rows of landmarks around mouth and eyes, moved outward. Each band has an elliptic cross section and
 lies under the skin: on the bone at its origin, and right below the skin at its insertion. The
-origin then moves with its bone, and the insertion with the vertices that were over it at rest: to
-search the skin anew in each frame would make bands jump from one lip to the other.
+origin then moves with its bone, and the insertion with the vertices that were over it at rest. A
+new search in each frame would make bands jump from one lip to the other.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ ANYWHERE = "0.0.0.0"
 
 @dataclass(frozen=True)
 class Protocol:
-    """A way to send faces in packets.
+    """A protocol that sends faces in packets.
 
     title: its usual name. port: the usual port of receivers. module: the module of this package
     that holds the parser. library: an optional library that the parser needs, "" for none.

@@ -9,7 +9,7 @@ The angle is that of the face's bare skin in the texture. Recolouring changes th
 and blood (pigments.py) and the hair, so lips and cheeks follow the skin.
 
 In skin darker than the darkest painted complexion, additional melanin absorbs all wavelengths more
-evenly: published clusters of facial skin have b* of 15 at L* of 27 and of 38, but b* of 19 at L* of
+evenly. Published clusters of facial skin have b* of 15 at L* of 27 and of 38, but b* of 19 at L* of
 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 120461).
 """
 

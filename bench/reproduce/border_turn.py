@@ -21,7 +21,7 @@ Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the open
 The border itself is rarely visible: it may lie inside the lips, and a viewer sees a line beside it.
 So a vertex near the border takes over the mean turn of its neighbours nearer to the border, reduced
 with every ring, up to REACH_RINGS. The measure of an edge there is multiplied by the squared cosine
-between the edge and the border: there is no turn across the border, and long, thin triangles along
+between the edge and the border. Across the border there is no turn, and long, thin triangles along
 the lips are desired (section 5, Fig. 8).
 
 At a corner of the mesh the border has no turn, because a corner stays a corner.

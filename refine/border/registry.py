@@ -110,8 +110,8 @@ def create(
     vertex positions [any unit], shape (V, 3), any float type. `uv`: texture coordinates, shape (U,
     2); `face_uv`: the row in `uv` of each corner, shape (F, 3), or None if vertex v has coordinate
     v (then U = V). `options`: options of the refiner; see `create_kahler` and `Loop`. All built-in
-    refiners take `attributes`, by name: values of each vertex, shape (V, k), or, for values that
-    differ along seams, a pair of values, shape (A, k), and the row of each corner, shape (F, 3).
+    refiners take `attributes`, by name: one array of vertex values, shape (V, k). If values differ
+    along seams, give a pair instead: values, shape (A, k), and rows of the corners, shape (F, 3).
     They also take `crease_angle` [degrees]: edges whose two triangles form a larger angle at rest
     stay sharp. Raises ValueError for an unknown name or option, for arrays that do not fit
     together, and for a refiner of an installed package that cannot be imported.

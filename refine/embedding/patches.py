@@ -1,9 +1,9 @@
 r"""The smooth surface of a coarse mesh: one cubic patch over each triangle, and its rotations.
 
-Curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles"), whose border
-curves are those of the scheme `cubic` (beyond/cubic.py): their tangents are normal to the vertex
-normals inside the mesh, and follow the border curve on borders and creases. Neighbouring patches
-share the curve between them.
+Patches are curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles") with
+the border curves of the scheme `cubic` (beyond/cubic.py). Inside the mesh the curves' tangents are
+normal to the vertex normals; on borders and creases they follow the border curve. Neighbouring
+patches share the curve between them.
 
            a_c
           /   \          corners        a, b, c
