@@ -1,4 +1,4 @@
-"""Reading of a user's light maps: equirectangular pictures in Radiance HDR and OpenEXR.
+"""Lights by name, and the user's light maps: equirectangular Radiance HDR and OpenEXR files.
 
 Source: Ward 1991, "Real pixels", Graphics Gems II, for the bytes of Radiance's files.
 """
@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,46 @@ from .files import read_bytes
 
 LIGHT_SUFFIXES = (".hdr", ".exr")
 Pixels = npt.NDArray[np.float32]
+
+
+class SceneLight(NamedTuple):
+    """A light, and its map as a background; behind: None for a lamp."""
+
+    light: render.Light
+    behind: render.MapBackground | None
+
+
+_known: dict[str, SceneLight] = {}  # by name
+
+
+def scene_light(name: str) -> SceneLight:
+    """Return the light of a name: one of `render.LIGHTS`, or the path of a light map.
+
+    A file is read once, until `open_light` reads it again. UserError for an unusable file.
+    """
+    if name not in _known:
+        _known[name] = _light_of(name)
+    return _known[name]
+
+
+def open_light(path: Path) -> str:
+    """Read a light map, and return the name of its light; UserError for an unusable file."""
+    name = str(path.absolute())
+    _known[name] = _light_of(name)
+    return name
+
+
+def is_light(name: str) -> bool:
+    """Whether this can be the name of a light; the file of a map is not looked up."""
+    return name in render.LIGHTS or Path(name).suffix.lower() in LIGHT_SUFFIXES
+
+
+def _light_of(name: str) -> SceneLight:
+    if name in render.LAMPS:
+        return SceneLight(render.LAMPS[name], None)
+    light_map = render.LIGHT_MAPS.get(name) or read_light_map(Path(name))
+    light, exposure = light_map.exposed()
+    return SceneLight(light, light_map.background(exposure=exposure))
 
 
 def read_light_map(path: Path) -> render.LightMap:

@@ -35,7 +35,7 @@ class LightMap:
         """Return the exposed light of the map; turn: rotation to the viewer's right [deg]."""
         return self.exposed(turn)[0]
 
-    def exposed(self, turn: float) -> tuple[Light, float]:
+    def exposed(self, turn: float = 0.0) -> tuple[Light, float]:
         """Return the result of `light`, and the exposure: the factor on the radiance."""
         rows, columns = self.radiance.shape[:2]
         every = max(rows // 32, 1)  # a resolution of 6 degrees suffices for light

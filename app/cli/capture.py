@@ -13,7 +13,6 @@ from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
 from .options import SCENE, SCRIPT, SETTINGS, SOUND, Drawing, option, packed, played
-from .styles import LIGHT_NAMES, STYLE_WORDS
 from .value_types import MAP_BACKGROUND, PATH, BackgroundName, FiniteRange, Size, Times
 
 if TYPE_CHECKING:
@@ -58,11 +57,6 @@ class Filming:
         help="light, dark, white, black, a colour as #00b140 or grey, transparent, or map: the map "
         "that lights the scene, out of focus.",
     )
-    light: Path | None = option(
-        type=PATH,
-        help="A map of the light from all directions, .hdr or .exr, twice as wide as high. Its "
-        "middle lies behind the head. --style light=NAME chooses a built-in one.",
-    )
     passes: str | None = option(
         metavar="NAME,...",
         help="Files to write beside each picture: depth, normal, triangle, splits, segmentation, "
@@ -101,29 +95,21 @@ class Filming:
         return ",".join(words) or None, is_turntable
 
     def _style(self, drawing: Drawing) -> render.Style:
-        """Return the style of pictures, with the light of --light if it is set."""
+        """Return the style of pictures, with its background."""
         from risorius import render
 
-        from ..light_maps import read_light_map
+        from ..light_maps import scene_light
 
         style = drawing.style()
-        light_map = render.LIGHT_MAPS.get(drawing.style_options["light"])
-        if self.light is not None:
-            if "light" in STYLE_WORDS.read(drawing.style_settings):
-                raise UserError("--light and --style light= are both given; leave one out")
-            if self.light.name in LIGHT_NAMES and not self.light.exists():
-                name = self.light.name
-                raise UserError(f"--light {name}: no such file; write --style light={name}")
-            light_map = read_light_map(self.light)
-            style = replace(style, light=light_map.light())
         if not isinstance(self.background, str):
             return replace(style, background=self.background)
-        if light_map is None:
+        behind = scene_light(drawing.style_options["light"]).behind
+        if behind is None:
             raise UserError(
                 f"--background {MAP_BACKGROUND}: no map lights the scene; add --light FILE, or "
                 f"--style light={' or '.join(render.LIGHT_MAPS)}"
             )
-        return replace(style, background=light_map.background())
+        return replace(style, background=behind)
 
     def options(
         self, script: Script, drawing: Drawing, *, is_recorded: bool = False
@@ -188,7 +174,7 @@ def capture(
     from ..passes.labels import beside
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
-    check_apart(written, (script, sound, *drawing.files))
+    check_apart(written, (script, sound, drawing.light, *drawing.files))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         raise UserError(
             f"--sound {sound}: only films with sound can hold it; end -o in {', '.join(HEARD)}"

@@ -229,8 +229,9 @@ def open_window(
         from ..viewer.session.live_commands import check_scene
 
         check_scene(performance.scene)
-    drawn = (drawing.refinement(), drawing.anatomy_view()) if drawing.is_given else None
-    if drawn is not None:
+    drawn = None
+    if drawing.is_given:
+        drawn = drawing.refinement(), drawing.anatomy_view(), drawing.style_options
         drawn[0].check("face" if performance is None else performance.scene)
     drawing.check_head()
     path = settings_path()
@@ -238,13 +239,15 @@ def open_window(
         script, head, complaint = splash.during(load)
         if drawing.files:
             splash.settings.note_recent(*drawing.files)
+        if drawing.light is not None:
+            splash.settings.note_recent(drawing.light)
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 
         display = None  # as in the last window
         if drawn is not None:
-            refinement, anatomy = drawn
-            display = display_of(refinement, script.scene, anatomy, **drawing.style_options)
+            refinement, anatomy, style = drawn
+            display = display_of(refinement, script.scene, anatomy, **style)
         viewer = Viewer(script, size, display, head=head, settings_path=path, splash=splash)
         with viewer:
             if listening is not None:

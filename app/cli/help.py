@@ -29,7 +29,6 @@ MOVED: Mapping[str, str] = {
     "--face": _CONVERT,
     "--rate": _CONVERT,
     "--skin": _STYLE,
-    "--light": _STYLE,  # capture and dataset have another option of this name
     "--wrinkles": _STYLE,
     "--wireframe": _WORD,
     "--splits": _WORD,

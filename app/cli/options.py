@@ -15,7 +15,7 @@ from click.core import ParameterSource
 from ..errors import UserError
 from ..playback import LEAD, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
-from .styles import LIGHT_NAMES, STRUCTURES, anatomy_in, style_in
+from .styles import LIGHT_NAMES, STRUCTURES, STYLE_WORDS, anatomy_in, style_in
 from .value_types import PATH, FiniteRange, HeadName
 
 if TYPE_CHECKING:
@@ -175,21 +175,43 @@ class Drawing(Subject):
         f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}; wrinkles=0..1, their depth.",
     )
 
+    light: Path | None = option(
+        type=PATH,
+        help="A map of the light from all directions, .hdr or .exr, twice as wide as high. Its "
+        "middle lies behind the head. --style light=NAME chooses a built-in one.",
+    )
+
     @property
     def style_options(self) -> dict[str, Any]:
-        """The settings of --style by name."""
-        return style_in(self.style_settings)
+        """The settings of --style by name, with the path of --light as `light`.
+
+        Raises UserError for unknown words, and for a file that is no map of light.
+        """
+        settings = style_in(self.style_settings)
+        if self.light is None:
+            return settings
+        from ..light_maps import check_light_map
+
+        if "light" in STYLE_WORDS.read(self.style_settings):
+            raise UserError("--light and --style light= are both given; leave one out")
+        name = self.light.name
+        if name in LIGHT_NAMES and not self.light.exists():
+            raise UserError(f"--light {name}: no such file; write --style light={name}")
+        check_light_map(self.light)
+        return settings | {"light": str(self.light.absolute())}
 
     @property
     def is_given(self) -> bool:
         """Whether the command line sets an option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
-        names = ("look", "refiner", "refiner_settings", "style_settings", "anatomy")
+        names = ("look", "refiner", "refiner_settings", "style_settings", "light", "anatomy")
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
         """Return the style that these options set; raise UserError for unknown words."""
         from risorius import render
+
+        from ..light_maps import scene_light
 
         wanted = self.style_options
         skin = wanted["skin"]
@@ -199,7 +221,7 @@ class Drawing(Subject):
             textured=skin == "textured",
             albedo=render.CLAY if skin == "clay" else render.SKIN,
             bumps=wanted["wrinkles"],
-            light=render.LIGHTS[wanted["light"]],
+            light=scene_light(wanted["light"]).light,
         )
 
     def anatomy_view(self) -> AnatomyView:

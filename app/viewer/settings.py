@@ -31,6 +31,7 @@ from ..capture.outputs import FORMATS as FILMS
 from ..errors import UserError
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
+from ..light_maps import LIGHT_SUFFIXES, is_light, scene_light
 from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
 from ..scenes import Drawable
 from ..text import in_one_line
@@ -72,6 +73,16 @@ for _each in MOTION:
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
 
 
+def _light(value: Any) -> str:
+    if not isinstance(value, str) or not is_light(value):
+        lights = ", ".join(render.LIGHTS)
+        maps = " or ".join(LIGHT_SUFFIXES)
+        raise ValueError(
+            f"was {quoted(value)}, must be one of {lights}, or the path of a map {maps}"
+        )
+    return value
+
+
 def _option(value: Any) -> Any:
     is_number = isinstance(value, int | float)
     if is_number and abs(value) <= sys.float_info.max:
@@ -111,7 +122,7 @@ class Display(Record):
     skin: Annotated[str, OneOf(SKINS)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from texture maps
     wrinkles: Share = 1.0  # depth of wrinkles where skin is compressed
-    light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
+    light: Annotated[str, MadeFrom(Any, _light)] = "studio"  # the name of a `scene_light`
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
     tone: Annotated[str, OneOf(TONES)] = "own"  # tone of textured skin
     has_hair: Flag = True  # whether a head with textured skin has hair
@@ -169,6 +180,15 @@ class Display(Record):
         """Show an overlay or hide it."""
         others = [each for each in self.overlays if each != name]
         self.overlays = others if name in self.overlays else [*others, name]
+
+    def remove_missing_light(self) -> str:
+        """Use the default light if the light's map cannot be read; return the reason, or ""."""
+        try:
+            scene_light(self.light)
+        except UserError as error:
+            self.light = Display.light
+            return f"{error}; the light is as at first"
+        return ""
 
     def remove_missing_overlays(self, scene: Drawable) -> None:
         """Hide the overlays without data in this scene."""

@@ -45,7 +45,7 @@ def settle(viewer: Viewer) -> None:
 
     def is_steady() -> bool:
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
-        return viewer.file_drop.making is None and shown[-STEADY:] == STEADY * shown[-1:]
+        return not viewer.file_drop.is_making and shown[-STEADY:] == STEADY * shown[-1:]
 
     # While a face moves, panels may show older values.
     with mock.patch.object(viewer, "refresh", 0.0):

@@ -18,23 +18,7 @@ from risorius.app.light_maps import check_light_map, read_light_map
 from risorius.geometry.colour import to_screen
 
 from .command_line import risorius, succeeded
-
-HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
-
-
-def pixels():
-    """A sky that darkens downward, with a sun 60 times as bright."""
-    light = np.linspace(1.0, 0.25, 32)[:, None, None] * np.array([0.5, 0.75, 1.0])
-    light = np.broadcast_to(light, (32, 64, 3)).copy()
-    light[6:9, 40:44] = 60.0
-    return light
-
-
-def rgbe(light):
-    """Pixels with shared exponents (RGBE), (H, W, 4)."""
-    _, exponent = np.frexp(light.max(axis=-1))
-    mantissa = light * np.ldexp(256.0, -exponent)[..., None]
-    return np.concatenate([mantissa, exponent[..., None] + 128], axis=-1).astype(np.uint8)
+from .light_files import HEAD, pixels, rgbe, write_map
 
 
 def packed(lines):
@@ -154,7 +138,7 @@ def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
 def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
     """Each of 10 maps is read once for all samples; its light is computed once per sample."""
     for number in range(10):
-        (tmp_path / f"{number}.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+        write_map(tmp_path / f"{number}.hdr")
     (tmp_path / "folder.hdr").mkdir()
     read = []
     exposed = []
@@ -173,7 +157,7 @@ def test_maps_of_a_set_are_read_once(tmp_path, monkeypatch):
 
 def test_every_map_of_a_folder_is_checked(tmp_path):
     """The header of every map in a folder is checked before any sample is drawn."""
-    (tmp_path / "a.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+    write_map(tmp_path / "a.hdr")
     (tmp_path / "b.hdr").write_bytes(b"nothing")
     with pytest.raises(UserError, match=r"b\.hdr: cannot be read as a map of light"):
         surroundings.light_files_of(tmp_path)
@@ -187,7 +171,7 @@ def test_a_set_is_lit_by_files(tmp_path):
     """
     maps = tmp_path / "maps"
     maps.mkdir()
-    (maps / "sky.hdr").write_bytes(HEAD + rgbe(pixels()).tobytes())
+    write_map(maps / "sky.hdr")
     shutil.copy(maps / "sky.hdr", maps / "sun.hdr")
     options = ("--count", 1, "--size", "64x64", "--light", maps, "--quiet")
     succeeded("dataset", *options, "-o", tmp_path / "set")
@@ -243,8 +227,7 @@ def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
 @pytest.mark.parametrize("lit", ["file", "name"])
 def test_capture_shows_the_map_behind(tmp_path, lit):
     """The map may be a file, or a built-in one by name; without one, one line says what to add."""
-    path = tmp_path / "sky.hdr"
-    path.write_bytes(HEAD + rgbe(pixels()).tobytes())
+    path = write_map(tmp_path / "sky.hdr")
     light = ("--light", path) if lit == "file" else ("--style", "light=room")
     light_map = read_light_map(path) if lit == "file" else render.LIGHT_MAPS["room"]
     options = ("--scene", "plane", "--size", "80x60", "--background", "map")

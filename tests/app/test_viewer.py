@@ -35,6 +35,7 @@ from .driving import (
     write,
     xdotool,
 )
+from .light_files import write_map
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -270,13 +271,14 @@ def test_the_window_remembers(tmp_path):
     remembered = tmp_path / "risorius" / "viewer.json"
     remembered.parent.mkdir()
     remembered.write_text('{"size": ')
+    root = Path(__file__).parents[2]
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
 
     def replayed(*options):
         """The stored settings after a replay with these options."""
         result = subprocess.run(
             [*command, *options], capture_output=True, text=True, timeout=60, check=False,
-            env=environment, cwd=Path(__file__).parents[2],
+            env=environment, cwd=root,
         )  # fmt: skip
         assert result.returncode == 0, result.stderr
         assert result.stderr == ""
@@ -292,6 +294,12 @@ def test_the_window_remembers(tmp_path):
     assert settings.display == Display(look="paper", wireframe=True)
     assert replayed().display == settings.display
     assert replayed("--look", "smooth").display == Display()  # chosen, though the default
+    sky = write_map(tmp_path / "sky.hdr")
+    relative = os.path.relpath(sky, root)
+    settings = replayed("--light", relative)
+    assert settings.display == Display(light=str(root / relative))  # for windows in other folders
+    assert settings.recent == [str(script), str(root / relative)]
+    assert replayed().display == settings.display
 
 
 MAJOR = "zygomaticus_major"

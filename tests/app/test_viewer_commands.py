@@ -11,20 +11,26 @@ import pytest
 from pytest import approx
 
 from risorius.app.errors import UserError
+from risorius.app.light_maps import read_light_map, scene_light
 from risorius.app.live.protocols import Listening
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script
+from risorius.app.viewer.documents import file_drop
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.documents.file_drop import FileDrop
 from risorius.app.viewer.documents.scripts import Question, ScriptCommands
 from risorius.app.viewer.messages import Messages
+from risorius.app.viewer.picture.stage import style_of
 from risorius.app.viewer.session.live_commands import LiveCommands
 from risorius.app.viewer.session.physics import IdleLife
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack
+from risorius.app.viewer.settings import Display, Settings
 from risorius.app.viewer.timeline.keys import KeySelection
 
+from .driving import wait_for
+from .light_files import HEAD, pixels, rgbe, write_map
 from .sounds import noise, write_wav
 
 POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
@@ -38,16 +44,29 @@ class Desk:
     session: Session
     files: FileDialogs = field(default_factory=FileDialogs)
     messages: Messages = field(default_factory=Messages)
+    settings: Settings = field(default_factory=Settings)
 
     def __post_init__(self) -> None:
         question = Question(self.session)
-        self.scripts = ScriptCommands(self.session, self.files, question, lambda *_: None)
-        self.file_drop = FileDrop(self.files, self.scripts, lambda _: None, lambda *_: lambda: None)
+        note_recent = self.settings.note_recent
+        self.scripts = ScriptCommands(self.session, self.files, question, note_recent)
+        show = lambda *_: lambda: None  # noqa: E731
+        self.file_drop = FileDrop(self.files, self.scripts, self.settings, show, show)
 
     def drop(self, *paths: Path) -> str:
         """Open dropped files; return the message."""
         self.messages.carry_out(partial(self.file_drop.open, [str(path) for path in paths]))
         return self.messages.text
+
+    def finish(self) -> str:
+        """Wait for the thread that reads a light; return the message."""
+        wait_for(lambda: not self._is_reading())
+        return self.messages.text
+
+    def _is_reading(self) -> bool:
+        if self.file_drop.has_news:
+            self.messages.attempt(self.file_drop.poll)
+        return self.file_drop.is_making
 
     def save(self) -> str:
         """Save the script; return the message."""
@@ -57,8 +76,9 @@ class Desk:
 
 @pytest.fixture
 def desk(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
-    """A desk in a folder for this test alone."""
+    """A desk in a folder for this test alone; there is no window to wake up."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(file_drop, "wake_up", lambda: None)
     return Desk(session)
 
 
@@ -73,14 +93,50 @@ def test_an_unreadable_file_is_reported(desk, tmp_path):
     bad.write_bytes(bytes(range(256)))
     assert "is not text in UTF-8" in desk.drop(bad)
     assert "one of them is enough" in desk.drop(bad, tmp_path)
-    light = tmp_path / "Room.HDR"
-    light.write_bytes(b"#?RADIANCE")
-    assert "is a map of light, which `risorius capture --light` reads" in desk.drop(light)
-    assert desk.messages.is_error
     assert desk.session.script is before
     bad.write_text(POSE)
     desk.drop(bad)
     assert desk.session.values["jaw_open"] == 0.5
+
+
+def test_a_dropped_map_lights_the_scene(desk, tmp_path):
+    """A map, alone or with a script, lights the scene, and a changed file is read again."""
+    sky = write_map(tmp_path / "Sky.HDR")
+    desk.drop(sky)
+    assert desk.finish() == "Sky.HDR: lights the scene"
+    display = desk.settings.display
+    assert display.light == str(sky)
+    assert desk.settings.recent == [str(sky)]
+    assert style_of(display, None).light == read_light_map(sky).light()
+    before = scene_light(display.light)
+    mirrored = rgbe(pixels())[:, ::-1]
+    sky.write_bytes(HEAD + mirrored.tobytes())
+    script = tmp_path / "script.toml"
+    script.write_text(SCRIPT)
+    desk.drop(sky, script)
+    desk.finish()
+    assert desk.session.script.duration == 2.0
+    assert scene_light(display.light).light.to_key[0] == approx(-before.light.to_key[0], abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (None, "no such file"),
+        (b"#?RADIANCE\n\n-Y 32 +X 32\n", "is twice as wide as high"),
+        (HEAD + b"zz", "cannot be read as a map of light: it is shorter than its size requires"),
+    ],
+)
+def test_a_broken_map_is_one_line(desk, tmp_path, content, line):
+    """A missing file, a square picture and a cut-off map are reported; the light stays."""
+    bad = tmp_path / "bad.hdr"
+    if content is not None:
+        bad.write_bytes(content)
+    desk.drop(bad)
+    text = desk.finish()
+    assert line in text and "bad.hdr" in text and "\n" not in text
+    assert desk.messages.is_error
+    assert desk.settings.display == Display()
 
 
 def test_saving_asks_where_it_did_not_open(desk, tmp_path):

@@ -12,12 +12,13 @@ from risorius.app import workers
 from risorius.app.capture import CaptureOptions
 from risorius.app.capture import capture as film_of
 from risorius.app.capture.drawing import camera_for
+from risorius.app.light_maps import open_light, read_light_map
 from risorius.app.recordings.names import ARKIT
 from risorius.app.refining.presets import Refinement
 from risorius.app.script.script_file import parse_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
-from risorius.render import LIGHT, LIGHTS, Style
+from risorius.render import Style
 
 from ..heads import user_head
 from .driving import (
@@ -32,6 +33,7 @@ from .driving import (
     write,
 )
 from .glb_player import document
+from .light_files import write_map
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -82,10 +84,14 @@ def pictures(folder):
 
 
 def test_a_film_is_that_of_capture(viewer, tmp_path):
-    """The film has the frames of `capture` with the same options; the face is unchanged."""
+    """The film has the frames of `capture` with the same options, here in the light of a map.
+
+    The face is unchanged.
+    """
     scene = viewer.session.scene
     viewer.face.view.camera = camera_for(scene, "three-quarter")
-    viewer.settings.display.light = "side"
+    viewer.settings.display.light = open_light(write_map(tmp_path / "sky.hdr"))
+    viewer.settings.display.background = "map"
     viewer.settings.display.look = "paper"
     before = scene.positions.copy()
     finish(viewer)
@@ -93,7 +99,8 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
     assert np.array_equal(scene.positions, before)
     assert str(tmp_path / "smile") in viewer.messages.text
     assert viewer.messages.stays
-    style = Style(light=LIGHTS["side"], background=LIGHT)
+    sky = read_light_map(tmp_path / "sky.hdr")
+    style = Style(light=sky.light(), background=sky.background())
     options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
     film_of(viewer.session.script, options, output=tmp_path / "captured", progress=False)
     ours = pictures(tmp_path / "smile")
@@ -190,7 +197,7 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     before = viewer.session.scene
     mesh, marks = user_head().write(tmp_path)
     put(viewer, mesh, marks)
-    assert until(viewer, lambda: viewer.file_drop.making is None)
+    assert until(viewer, lambda: not viewer.file_drop.is_making)
     click(viewer, "menu File")
     click(viewer, "menu File: Export")
     click(viewer, "menu File: Avatar ...")

@@ -358,7 +358,7 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
     known = replace(user_head(), mesh=Mesh(head.vertices, head.faces), landmarks=head.landmarks)
     mesh, _ = known.write(tmp_path)
     put(viewer, mesh)
-    assert until(viewer, lambda: viewer.file_drop.making is None)
+    assert until(viewer, lambda: not viewer.file_drop.is_making)
     assert viewer.marking_mode is None
     assert len(viewer.session.scene.faces) == len(head.faces)
     assert viewer.exporter.head.files == (mesh,)

@@ -43,6 +43,7 @@ def test_settings_come_back(tmp_path):
     settings.display.look = "paper"
     settings.display.compare = "wipe"
     settings.display.refiner = "loop"
+    settings.display.light = "/maps/room.hdr"
     settings.display.overlays = ["muscles"]
     settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
     save_settings(path, settings)
@@ -57,6 +58,8 @@ def test_settings_come_back(tmp_path):
         ("is_linked", "yes"),
         ("display", 3),
         ("display.refiner", "none"),
+        ("display.light", "zzz"),
+        ("display.light", 3),
         ("display.wrinkles", 10**400),
         ("display.overlays", ["muscles", "zzz"]),
         ("display.options.kahler.threshold_once", float("nan")),
@@ -104,21 +107,25 @@ def test_an_unreadable_settings_file_is_reported(path, content):
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-@pytest.mark.parametrize("name", ["theme", "display"])
-def test_no_settings_prevent_the_window_from_opening(path, name):
-    """With all values wrong, or with an option that a refiner refuses, the window opens.
+@pytest.mark.parametrize(
+    ("wrong", "fault"),
+    [
+        ({name: "zzz" for name in vars(Settings())}, "'theme': was 'zzz'"),
+        (
+            {"display": {"options": {"kahler": {"threshold_once": "x"}}}},
+            "threshold_once was x, must be a number",
+        ),
+        ({"display": {"light": "/nowhere/room.hdr"}}, "/nowhere/room.hdr: no such map of light"),
+    ],
+)
+def test_no_settings_prevent_the_window_from_opening(path, wrong, fault):
+    """The window opens with all values wrong, a refused option, or a removed map of light.
 
     A message reports the fault.
     """
-    wrong = {name: "zzz" for name in vars(Settings())}
-    if name == "display":
-        wrong = {name: {"options": {"kahler": {"threshold_once": "x"}}}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
         settle(viewer)
-        fault = (
-            "'theme': was 'zzz'" if name == "theme" else "threshold_once was x, must be a number"
-        )
         assert viewer.messages.is_error
         assert fault in viewer.messages.text
         assert viewer.settings.display == Display()

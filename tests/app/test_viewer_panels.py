@@ -33,6 +33,7 @@ from .driving import (
     until,
     write,
 )
+from .light_files import write_map
 
 from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
 
@@ -194,8 +195,8 @@ def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
     assert until(viewer, lambda: viewer.schedule.is_idle and not portraits.has_news)
 
 
-def test_the_scene_has_light_lens_and_hair(viewer):
-    """The mouse sets light, lens and hair; a reset of the mechanism keeps all three.
+def test_the_scene_has_light_lens_and_hair(viewer, tmp_path):
+    """The mouse sets light, of a file too, lens and hair; a reset of the mechanism keeps all.
 
     F resets only the lens.
     """
@@ -209,6 +210,14 @@ def test_the_scene_has_light_lens_and_hair(viewer):
     in_panel(viewer, ("Light", "street"), ("Background", "map"))
     behind = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     assert np.ptp(behind[5], axis=0).min() > 20  # the map's lamps
+    write_map(tmp_path / "sky.hdr")
+    in_panel(viewer, ("Light", "Map ..."))
+    write(viewer, "sky.hdr")
+    press_keys(viewer, "Return")
+    assert until(viewer, lambda: display.light == str(tmp_path / "sky.hdr")), viewer.messages.text
+    settle(viewer)
+    sky = viewer.context.stage.draw_image(viewer.face.view).astype(int)
+    assert sky[5].mean(axis=0)[2] > sky[5].mean(axis=0)[0] + 20  # the map is blue
     in_panel(viewer, ("Light", "side"))
     assert viewer.face.view.background == THEMES[viewer.settings.theme].background
     in_panel(viewer, ("Background", "white"))

@@ -1,4 +1,4 @@
-"""Files dropped onto the window: a script, pose or recording, a sound, a head."""
+"""Files dropped onto the window: a script, pose or recording, a sound, a head, a map of light."""
 
 from __future__ import annotations
 
@@ -13,33 +13,30 @@ from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
 from risorius.assets.meshes import FORMATS
 
 from ...errors import UserError
-from ...light_maps import LIGHT_SUFFIXES
+from ...light_maps import LIGHT_SUFFIXES, check_light_map, open_light
 from ...recordings.reading import is_recording
 from ...scenes import Scene, build_scene, called_head, head_in_words, own_head
 from ..interface.gui import wake_up
 from ..messages import Message, Task
+from ..settings import Settings
 from .file_dialogs import FileDialogs
 from .scripts import SOUND_SUFFIXES, ScriptCommands
 
 MESH_SUFFIXES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS_SUFFIX = ".json"
+SUFFIXES = {"mesh": MESH_SUFFIXES, "sound": SOUND_SUFFIXES, "light": LIGHT_SUFFIXES}
 
 
 def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
-    """Return files by kind: mesh, landmarks, sound or script; a script may be a pose or recording.
+    """Return files by kind: mesh, landmarks, sound, light or script.
 
-    The suffix decides the kind; a JSON file is read, because it may be a recording. UserError for
-    two files of one kind, and for a map of light.
+    A script may be a pose or a recording. The suffix decides the kind; a JSON file is read, because
+    it may be a recording. UserError for two files of one kind.
     """
     found: dict[str, Path] = {}
     for path in paths:
         end = Path(path.name.lower().removesuffix(".gz")).suffix  # reading reports a wrong .gz
-        if end in LIGHT_SUFFIXES:
-            raise UserError(
-                f"{path.name}: is a map of light, which `risorius capture --light` reads; the "
-                "window has the lights of its panel Scene"
-            )
-        kind = "mesh" if end in MESH_SUFFIXES else "sound" if end in SOUND_SUFFIXES else "script"
+        kind = next((each for each, ends in SUFFIXES.items() if end in ends), "script")
         if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
         if kind in found:
@@ -49,13 +46,47 @@ def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
+class Making:
+    """A thread that makes a task for the window's thread.
+
+    action: the thread's work, in words.
+    """
+
+    def __init__(self, action: str, make: Callable[[], Task]) -> None:
+        self._action = action
+        self._begun = time.monotonic()
+        self._shown_seconds = -1
+        thread = ThreadPoolExecutor(1)
+        self._task: Future[Task] = thread.submit(make)
+        self._task.add_done_callback(lambda _: wake_up())
+        thread.shutdown(wait=False)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the task is made."""
+        return self._task.done()
+
+    @property
+    def has_news(self) -> bool:
+        """Whether the task is made, or another second has passed."""
+        return self.is_done or int(time.monotonic() - self._begun) > self._shown_seconds
+
+    def report(self) -> Message:
+        """Run the task if it is made; otherwise return a message with the elapsed time."""
+        if self.is_done:
+            return self._task.result()()
+        self._shown_seconds = int(time.monotonic() - self._begun)
+        return f"{self._action} ... {self._shown_seconds} s"
+
+
 class FileDrop:
-    """Opens dropped files; a head takes seconds to make, so a thread makes it."""
+    """Opens dropped files; a head or a map takes seconds to read, so a thread reads it."""
 
     def __init__(
         self,
         files: FileDialogs,
         scripts: ScriptCommands,
+        settings: Settings,
         show_scene: Callable[[Scene], None],
         read: Callable[[Path, Path | None], Task],
     ) -> None:
@@ -66,19 +97,18 @@ class FileDrop:
         """
         self._files = files
         self._scripts = scripts
+        self._settings = settings
         self._show_scene = show_scene
         self._read = read
-        self.making: Future[Task] | None = None  # the task that shows a head
-        self._action = ""  # the thread's work, in words
-        self._begun = 0.0  # start time [s]
-        self._shown_seconds = 0
+        self._making: dict[str, Making] = {}  # by kind of file, at most one mesh and one light
 
     def open(self, paths: Sequence[str]) -> Message:
-        """Open files, or begin to make a head."""
+        """Open files, or begin to read a map of light or to make a head."""
         gone = next((path for path in paths if not Path(path).exists()), None)
         if gone is not None:
             raise UserError(f"{gone}: no such file")
         found = files_by_kind([Path(path) for path in paths])
+        light = found.pop("light", None)
         mesh = found.pop("mesh", None)
         landmarks = found.pop("landmarks", None)
         if mesh is None and landmarks is not None:
@@ -86,46 +116,58 @@ class FileDrop:
                 f"{landmarks.name}: has landmarks alone; drop it together with its mesh, "
                 "such as an .obj"
             )
+        if light is not None:
+            check_light_map(light)
+            make = partial(self._read_light, light)
+            self._making["light"] = Making(f"Reading {light.name}", make)
         if mesh is None:
             return self._play(found)
         action = "Reading" if landmarks is None else "Fitting muscles to"
-        self._begin(f"{action} {mesh.name}", partial(self._make, mesh, landmarks, found))
+        make = partial(self._make, mesh, landmarks, found)
+        self._making["mesh"] = Making(f"{action} {mesh.name}", make)
         return None
 
     def show_person(self, who: int | str | None) -> None:
-        """Begin to make the head with this number or name; None for the built-in head."""
+        """Begin to make the head with this number or name; None for the built-in head.
+
+        The result of an earlier thread that makes a head is dropped.
+        """
 
         def make() -> Task:
             head = None if who is None else called_head(who)
             return partial(self._show_scene, build_scene("face", head))
 
-        self._begin(f"Making {'the built-in head' if who is None else head_in_words(who)}", make)
+        name = "the built-in head" if who is None else head_in_words(who)
+        self._making["mesh"] = Making(f"Making {name}", make)
 
-    def _begin(self, action: str, make: Callable[[], Task]) -> None:
-        """Start a thread that makes the task to show a head; drop an earlier thread's result."""
-        self._action = action
-        self._begun = time.monotonic()
-        self._shown_seconds = -1
-        thread = ThreadPoolExecutor(1)
-        self.making = thread.submit(make)
-        self.making.add_done_callback(lambda _: wake_up())
-        thread.shutdown(wait=False)
+    @property
+    def is_making(self) -> bool:
+        """Whether a thread makes a head or reads a map of light."""
+        return bool(self._making)
 
     @property
     def has_news(self) -> bool:
-        """Whether the head is ready, or another second has passed."""
-        making = self.making
-        seconds = int(time.monotonic() - self._begun)
-        return making is not None and (making.done() or seconds > self._shown_seconds)
+        """Whether a head or a light is ready, or another second has passed."""
+        return any(each.has_news for each in self._making.values())
 
     def poll(self) -> Message:
-        """Show the head if it is ready; otherwise return a message with the elapsed time."""
-        making = self.making
-        if making is not None and making.done():
-            self.making = None
-            return making.result()()
-        self._shown_seconds = int(time.monotonic() - self._begun)
-        return f"{self._action} ... {self._shown_seconds} s"
+        """Show a head or a light that is ready; otherwise return a message with the time."""
+        kind, making = next(each for each in self._making.items() if each[1].has_news)
+        if making.is_done:
+            del self._making[kind]
+        return making.report()
+
+    def _read_light(self, path: Path) -> Task:
+        """Return a task that lights the scene by a map."""
+        name = open_light(path)
+
+        def show() -> Message:
+            """Light the scene."""
+            self._settings.display.light = name
+            self._scripts.note_recent(path)
+            return f"{path.name}: lights the scene"
+
+        return show
 
     def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
         """Return a task that shows a head or opens its marking, and then opens the other files."""
@@ -153,6 +195,15 @@ class FileDrop:
     def _play(self, found: Mapping[str, Path], remark: str = "") -> Message:
         line = self._scripts.open(found["script"], remark) if "script" in found else None
         return self._scripts.set_sound(found["sound"]) if "sound" in found else line
+
+    def ask_light(self) -> None:
+        """Ask for a map of light, and light the scene by it."""
+
+        def go_on(path: Path) -> Message:
+            """Open the map."""
+            return self.open([str(path)])
+
+        self._files.ask("Open map of light", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
 
     def ask_head(self) -> None:
         """Ask for a mesh; show it with the landmark file beside it, or else open its marking."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from imgui_bundle import imgui
@@ -163,15 +163,24 @@ def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool
             imgui.end_popup()
 
 
-def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
-    """Draw a list with imgui's current width; return a choice made in this frame, or None."""
+def choose(
+    gui: Gui,
+    label: str,
+    present: str,
+    choices: Iterable[str],
+    in_words: Callable[[str], str] = readable,
+) -> str | None:
+    """Draw a list with imgui's current width; return a choice made in this frame, or None.
+
+    in_words: returns the displayed text of a choice.
+    """
     chosen = None
     flags = imgui.ComboFlags_.height_largest
-    is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
+    is_open = imgui.begin_combo(f"##{label}", in_words(present), flags)
     gui.remember(label)
     if is_open:
         for choice in choices:
-            if imgui.selectable(readable(choice), choice == present)[0]:
+            if imgui.selectable(in_words(choice), choice == present)[0]:
                 chosen = choice
             gui.remember(f"{label}: {choice}")
         imgui.end_combo()

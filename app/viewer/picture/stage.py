@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -22,6 +21,7 @@ from risorius import render
 
 from ...capture.captions import Label, captioned, labels
 from ...capture.drawing import check_camera, whole_scene
+from ...light_maps import SceneLight, scene_light
 from ...pictures import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.plug_ins import PlugInError
@@ -69,12 +69,16 @@ class SceneView:
         return self._settings.display
 
     @property
+    def light(self) -> SceneLight:
+        """The light of the scene."""
+        return scene_light(self.display.light)
+
+    @property
     def background(self) -> render.Background | render.MapBackground:
         """The background of the picture."""
-        display = self.display
-        if display.background == "map" and display.light in render.LIGHT_MAPS:
-            return _map_behind(display.light)
-        return BACKGROUNDS[display.background] or THEMES[self._settings.theme].background
+        wanted = self.display.background
+        behind = self.light.behind if wanted == "map" else BACKGROUNDS[wanted]
+        return behind or THEMES[self._settings.theme].background
 
     @property
     def viewport(self) -> render.Rectangle:
@@ -105,7 +109,7 @@ class SceneView:
         lens = camera.field_of_view
         place = camera.yaw, camera.pitch, camera.distance, lens, *camera.target.tolist()
         lit = self.pointed, self.hovered
-        return place, display, self._settings.theme, self.viewport, lit
+        return place, display, self.light, self._settings.theme, self.viewport, lit
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
         """Return the line between the halves of a comparison, and the knob of a wipe."""
@@ -251,11 +255,6 @@ def pointed_lines(
     return drawn
 
 
-@cache
-def _map_behind(light: str) -> render.MapBackground:
-    return render.LIGHT_MAPS[light].background()
-
-
 def style_of(
     display: Display, background: render.Background | render.MapBackground | None
 ) -> render.Style:
@@ -269,7 +268,7 @@ def style_of(
         skin_maps=display.skin_maps,
         albedo=albedo,
         bumps=display.wrinkles,
-        light=render.LIGHTS[display.light],
+        light=scene_light(display.light).light,
         background=background,
     )
 

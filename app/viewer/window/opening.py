@@ -9,6 +9,7 @@ from risorius import refine
 from risorius.assets.fitting import FittedHead
 
 from ...errors import UserError
+from ...light_maps import scene_light
 from ...refining.plug_ins import plug_ins_of, reported
 from ...refining.refiners import refiner_for
 from ...scenes import Scene, build_scene
@@ -35,9 +36,11 @@ def open_window(
         stack.push(splash)
         if display is not None:
             settings.display = display
+            scene_light(display.light)
             _refine_once(scene, display)
         else:
-            complaint = complaint or without_refused_options(settings.display, scene)
+            dark = settings.display.remove_missing_light()
+            complaint = complaint or dark or without_refused_options(settings.display, scene)
         settings.display.remove_missing_overlays(scene)
         context = ApplicationContext(Session(scene, script), settings, splash.surface)
         stack.callback(context.close)
@@ -55,12 +58,16 @@ def without_refused_options(display: Display, scene: Scene) -> str:
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
-    """Return the scene at rest, after its first frames ran once to compile their code."""
+    """Return the scene at rest, after its first frames ran once to compile their code.
+
+    A map of light is read too.
+    """
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     scene.step(1.0 / 60.0)
     scene.reset()
     with contextlib.suppress(UserError):  # reported when the window is open
+        scene_light(display.light)
         _refine_once(scene, display)
     return scene
 

@@ -105,7 +105,7 @@ class Schedule:
         is_watching = (
             context.files.is_waiting
             or imgui.get_io().want_text_input  # for the blinking cursor
-            or self._file_drop.making is not None
+            or self._file_drop.is_making
             or context.exporter.job is not None
         )
         idle_wait = 2.0  # [s] between two frames while nothing happens

@@ -78,7 +78,9 @@ class Viewer:
         self.files = context.files
         self.exporter = context.exporter
         self.recovery = Recovery(settings_path and settings_path.parent, self.session)
-        self.file_drop = FileDrop(self.files, context.scripts, self.show_scene, self.read)
+        self.file_drop = FileDrop(
+            self.files, context.scripts, self.settings, self.show_scene, self.read
+        )
         self.face = FaceMode(context, self.file_drop, self.ask_to_close)
         self.marking_mode: MarkingMode | None = None
         self.gui.keys = {each.label: each.displayed_keys for each in self.face.commands}
