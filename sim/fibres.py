@@ -148,7 +148,7 @@ def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tupl
 
 
 class FibreHold(NamedTuple):
-    """How firmly places are attached to a fibre, and how they move when it contracts."""
+    """How firmly points are attached to a fibre, and how they move when it contracts."""
 
     width: float  # mm across the fibre, of a Gaussian
     beyond: float  # mm past its end, likewise

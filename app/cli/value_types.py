@@ -128,7 +128,7 @@ class HeadName(click.ParamType["Path | int | str"]):
     ) -> Path | int | str:
         """Return the number of a person, a name in HEAD_NAMES, or else a path.
 
-        A name without a suffix fails as a misspelt head if there is no such file.
+        A name without a suffix is reported as a misspelt head if there is no such file.
         """
         if value in HEAD_NAMES:
             return str(value)

@@ -80,7 +80,7 @@ class FileMeshWriter:
         self._materials: dict[int, int] = {}
 
     def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
-        """Add the mesh with those triangles whose flag in `chosen` (F,) is set; return its number.
+        """Add the mesh with those triangles whose flag in `chosen` (F,) is set; return its index.
 
         names: names of the shapes.
         """
@@ -97,7 +97,7 @@ class FileMeshWriter:
     def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats64) -> int:
         """Add a mesh without shapes of the triangles whose flag in `chosen` (F,) is set.
 
-        pivot: origin of the mesh, in the file's coordinates, (3,). Returns the mesh's number.
+        pivot: origin of the mesh, in the file's coordinates, (3,). Returns the mesh's index.
         """
         split = self._split
         corners = split.corners[chosen]
@@ -184,7 +184,7 @@ class FileMeshWriter:
         ]
 
     def _material(self, number: int) -> int:
-        """Add a material of the file to the glTF file; return its number there, -1 for none."""
+        """Add a material of the file to the glTF file; return its index there, -1 for none."""
         if number not in self._materials:
             rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.6}
             material: dict[str, Any] = {"name": "skin", "pbrMetallicRoughness": rough}

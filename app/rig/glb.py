@@ -55,7 +55,7 @@ class Glb:
         return bytes(self._numbers)
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
-        """Add an item to the list `kind`, such as "nodes" or "meshes"; return its number there."""
+        """Add an item to the list `kind`, such as "nodes" or "meshes"; return its index there."""
         items = self.parts.setdefault(kind, [])
         items.append(item)
         return len(items) - 1
@@ -69,7 +69,7 @@ class Glb:
     def accessor(
         self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
     ) -> int:
-        """Add an array whose rows are numbers, vectors or matrices (by columns); return its number.
+        """Add an array whose rows are numbers, vectors or matrices (by columns); return its index.
 
         target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER or None.
         is_bounded: whether to add minima and maxima, which positions and times need.
@@ -86,7 +86,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
-        """Add vectors (V, 3) of which most are 0, stored sparsely; return the array's number."""
+        """Add vectors (V, 3) of which most are 0, stored sparsely; return the array's index."""
         count = len(vectors)
         places = np.flatnonzero(vectors.any(axis=1))
         if not len(places):
@@ -136,7 +136,7 @@ class Glb:
         return {"index": self.add("textures", {"source": self.image(file.getvalue(), kind)})}
 
     def image(self, content: bytes, kind: str) -> int:
-        """Add the content of a picture file, "png" or "jpeg", unchanged; return its number."""
+        """Add the content of a picture file, "png" or "jpeg", unchanged; return its index."""
         view = self._view(content, None)
         return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
@@ -175,7 +175,7 @@ class Glb:
         return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
     def _view(self, data: bytes, target: int | None) -> int:
-        """Add aligned bytes as a buffer view; return its number."""
+        """Add aligned bytes as a buffer view; return its index."""
         self._numbers += b"\0" * (-len(self._numbers) % ALIGNMENT)
         view = {"buffer": 0, "byteOffset": len(self._numbers), "byteLength": len(data)}
         self._numbers += data

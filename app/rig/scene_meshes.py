@@ -43,7 +43,7 @@ class Piece:
 def add_mesh(
     glb: Glb, scene: Scene, piece: Piece, origin: Floats64, weights: Floats64 | None
 ) -> int:
-    """Add a mesh whose vertices are relative to `origin` [mm], (3,); return its number.
+    """Add a mesh whose vertices are relative to `origin` [mm], (3,); return its index.
 
     weights: weight of the head's motion at each vertex, 0 to 1, (V,); None if there is no head.
     """
@@ -99,7 +99,7 @@ def add_mesh(
 
 
 def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
-    """Add the material of a surface; return its number."""
+    """Add the material of a surface; return its index."""
     rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # chosen by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:

@@ -42,7 +42,7 @@ def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
 
 
 def add_to(part: Image, more: Floats32) -> None:
-    """Add values to the bytes of a map in place, and clip them to 0 to 255; equal shapes."""
+    """Add values to the bytes of a map in place, clipped to 0 to 255; both have the same shape."""
     changed = part + more
     np.rint(changed, out=changed)
     part[...] = np.clip(changed, 0.0, 255.0, out=changed)

@@ -218,7 +218,7 @@ def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place:
 
 @njit
 def newton_step(aside: Vector, columns: Floats64) -> Vector:
-    """Return the step in barycentric coordinates that minimises `aside`, by least squares."""
+    """Return the barycentric step that minimises the remaining vector `aside` (least squares)."""
     first = less(row_of(columns, 1), 1.0, row_of(columns, 0))
     second = less(row_of(columns, 2), 1.0, row_of(columns, 0))
     a = dot(first, first)
@@ -237,7 +237,7 @@ def newton_step(aside: Vector, columns: Floats64) -> Vector:
 
 @njit
 def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
-    """Return the step along the edge from corner i to corner j that minimises `aside`."""
+    """Return the step along the edge from corner i to j that minimises the remainder of `aside`."""
     way = less(row_of(columns, j), 1.0, row_of(columns, i))
     squared = dot(way, way)
     size = dot(way, aside) / squared if squared > 0.0 else 0.0

@@ -158,8 +158,8 @@ def find_edges(
     """Number the edges in the order of their first use, so that neighbours are near in memory.
 
     Returns the edge of each half-edge, -1 for none, shape (3 F,); end points, shape (E, 2); the
-    first two sides, shape (E, 2); and the number of sides, shape (E,). Edges with the same sum of
-    end points form a linked list, which is short even at a vertex of large valence.
+    first two sides, shape (E, 2); and the number of sides, shape (E,). Edges whose vertex indices
+    have the same sum form a linked list, which is short even at a vertex of large valence.
     """
     half_edge_count = faces.size
     edge_of = np.full(half_edge_count, np.int32(-1))
