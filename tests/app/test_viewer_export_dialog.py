@@ -156,7 +156,7 @@ def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeyp
 
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer, kind):
-    """A wrong folder is reported at once, and all choices stay for another try."""
+    """A wrong folder is reported at once; the typed name and all choices stay for another try."""
     viewer.settings.export.kind = kind
     press_keys(viewer, "F10")
     begin(viewer, "/proc/none/moved")
@@ -165,6 +165,9 @@ def test_a_bad_folder_is_one_line(viewer, kind):
     assert "\n" not in viewer.messages.text
     assert viewer.exporter.job is None
     assert viewer.settings.export.kind == kind
+    assert viewer.files.request.name == "/proc/none/moved"
+    press_keys(viewer, "Escape")
+    assert not viewer.files.is_waiting
 
 
 @pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar", "gltf"])

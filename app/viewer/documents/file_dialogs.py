@@ -11,6 +11,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from ...control_names import sentence
+from ...errors import UserError
 from ...text import as_text
 from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
@@ -122,15 +123,26 @@ class FileDialogs:
             is_cancelled = button(gui, "Cancel", name="path cancelled")
             is_cancelled = is_cancelled or imgui.is_key_pressed(imgui.Key.escape)
             imgui.same_line()
-            imgui.text_colored(colour(gui.theme.error), sentence(request.complaint))
+            room = imgui.get_content_region_avail().x
+            complaint = shortened(sentence(request.complaint), room, keeps_end=True)
+            imgui.text_colored(colour(gui.theme.error), complaint)
             if chosen is None and not is_cancelled:
                 return None
             imgui.close_current_popup()
         self.request = None
         if chosen is None or is_cancelled:
             return None
+        try:
+            line = request.then(chosen)
+        except (UserError, OSError) as error:
+            if request.is_saving:  # the dialog stays, with the name for another try
+                request.complaint = str(error)
+                request.warned = None
+                request.wants_focus = True
+                self.request = request
+            raise
         self._folder = chosen.parent
-        return request.then(chosen)
+        return line
 
 
 def _draw_places(gui: Gui, request: FileRequest) -> None:
