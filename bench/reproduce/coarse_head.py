@@ -1,7 +1,7 @@
 """Measure the visible effect of the paper's rule on a head with a quarter of the triangles.
 
 Kähler, Haber, Seidel 2003, section 1: "when the surface is animated by moving the mesh nodes, the
-resulting mesh doesn't adapt well to the deformation." On 536 triangles this is clearly visible. As
+resulting mesh doesn't adapt well to the deformation." On 540 triangles this is clearly visible. As
 in Figure 10, the built-in head with 16 times its triangles is moved by the same muscles, drawn in
 the same way, and taken as the truth; the coarse head's vertices are a subset of its vertices. In
 the maps below the pictures, a changed pixel is green if it came nearer to the dense mesh's picture,

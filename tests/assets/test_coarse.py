@@ -6,6 +6,7 @@ import scipy
 import trimesh
 
 from risorius.assets.coarse import coarse_head
+from risorius.assets.data_files import read_image
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products
@@ -63,6 +64,23 @@ def test_coarse_head_lies_on_the_built_in_one(coarse, head):
     distance = scipy.spatial.cKDTree(fine).query(middles)[0]
     assert distance.max() < 15.0
     assert np.median(distance) < 3.0
+
+
+def test_roots_of_lashes_lie_below_the_edge_of_the_lid(coarse, head):
+    """The dark line of the roots lies on the margin of the upper lid, not on its front.
+
+    Otherwise a shut lid would have a dark hook at its outer corner.
+    """
+    roots = read_image(head.beside("_lids.png"), mode="L") / 255.0
+    in_front = (384, int(head.mirror[384]))  # on the front of each lid, above its outer corner
+    is_front = np.isin(coarse.file_vertices[coarse.faces], in_front).any(axis=1)
+    steps = np.linspace(0.0, 1.0, 30)
+    shares = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b <= 1.0])
+    places = shares @ coarse.uv[coarse.faces[is_front]]
+    rows, columns = ((1.0 - places[..., 1]), places[..., 0])
+    dark = roots[(rows * len(roots)).astype(int), (columns * len(roots)).astype(int)]
+    assert len(dark) >= 12
+    assert dark.mean(axis=1).max() < 0.06
 
 
 def test_coarse_triangles_look_outward(coarse, head):
