@@ -38,6 +38,10 @@ GUMS = Gloom(2.0, 34.0, 0.2)
 TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
 UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED)
 LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
+# The file's gums are nearly black in the notches between crowns, which are light. In the corner of
+# a smile these notches were dark shapes. Gums keep this exponent of their painted shade.
+GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of the file
+GUM_SHADE = 0.35
 
 
 @dataclass(eq=False, kw_only=True)
@@ -93,7 +97,10 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)
-        return replace(part, colours=_shaded(part.vertices, part.colours, front, gloom))
+        own = part.colours
+        if part.name.startswith("gums"):
+            own = GUM * np.clip(own / GUM, 0.0, 1.0) ** GUM_SHADE
+        return replace(part, colours=_shaded(part.vertices, own, front, gloom))
 
     return tuple(shaded(part) for part in parts)
 

@@ -33,7 +33,7 @@ const float TURNED = 0.35;  // weight of the surface's orientation
 // Width of the shade of the upper lip and of the corners, in widths of the opening, and fraction of
 // light that is lost in it.
 const float REACH_ABOVE = 0.17, REACH_ASIDE = 0.26;
-const float SHADE_ABOVE = 0.5, SHADE_ASIDE = 0.6;
+const float SHADE_ABOVE = 0.5, SHADE_ASIDE = 0.85;
 
 // Distance of a point from the upper half of the rim.
 float distance_above(vec3 place) {

@@ -44,3 +44,17 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     assert tongue.shine > rest.shine
     assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # not too pink
     assert tongue.unlit[:, 0].mean() < 0.68
+
+
+def test_notches_of_gums_are_not_black(face):
+    """Gums between crowns are lighter than in the file, where they are nearly black.
+
+    In the corner of a smile they were dark shapes beside light crowns.
+    """
+    given = {part.name: part for part in face.head.parts}["gums_upper"]
+    drawn = {part.name: part for part in face.parts}["gums_upper"]
+    is_dark = given.colours.mean(axis=1) < 0.2
+    assert is_dark.sum() > 50
+    assert drawn.colours[is_dark].mean() > 1.7 * given.colours[is_dark].mean()
+    darkest, lightest = np.percentile(drawn.colours[:, 0], (1, 99))
+    assert 0.5 * lightest < darkest < 0.8 * lightest  # notches remain a little darker

@@ -53,6 +53,18 @@ def test_a_wider_mouth_lets_in_more_light(renderer):
     assert middles[2] > 0.85
 
 
+def test_the_corners_of_a_mouth_are_in_shade(renderer):
+    """Light in an open mouth falls gradually toward its corners.
+
+    Otherwise premolars beside dark gums would have a light edge.
+    """
+    opening = render.Opening(rim(30.0, 12.0, 20.0), is_filled=False)
+    share = light(renderer, opening) / light(renderer, None)
+    lights = [at(share, x, -1.0).item() for x in (0.0, 4.0, 8.0, 12.0)]
+    assert (np.diff(lights) < 0.0).all()
+    assert lights[-1] < 0.63 * lights[0]
+
+
 def test_a_tongue_outside_the_mouth_has_all_light(renderer):
     """A tongue in front of the lips loses no light."""
     opening = render.Opening(rim(50.0, 20.0, 5.0), is_filled=False)
