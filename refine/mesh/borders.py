@@ -80,8 +80,9 @@ def follow_outlines(
 
 def edges_of_outlines(mesh: Connectivity, outlines: Sequence[Sequence[int]]) -> Flags:
     """Edges between the second and the last but one vertex of each outline, shape (E,)."""
-    inner = {frozenset(edge) for rim in outlines for edge in pairwise(rim[1:-1])}
-    edges = mesh.edges.tolist() if inner else ()
-    found = np.zeros(len(mesh.edges), np.bool_)
-    found[[number for number, edge in enumerate(edges) if frozenset(edge) in inner]] = True
-    return found
+    inner = [edge for rim in outlines for edge in pairwise(rim[1:-1])]
+    if not inner:
+        return np.zeros(len(mesh.edges), np.bool_)
+    first, last = np.sort(np.array(inner, dtype=np.int64), axis=1).T
+    near, far = np.sort(mesh.edges.astype(np.int64), axis=1).T
+    return np.isin(near * mesh.vertex_count + far, first * mesh.vertex_count + last)
