@@ -26,6 +26,7 @@ SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with tra
 OPACITY = 0.25  # default opacity of the skin
 SOFT = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
 OUTER_HAIR = (HAIR, HAIR + "_tied")
+CUT_LOCKS = 15.0  # [mm]; distance from the cut of a dissection to the locks of hair that are drawn
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,10 @@ class Anatomy:
         """Return the half of a part that is not on `side`, in its current shape."""
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
-            self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
+            # Locks near the cut would float above the skull of the other side.
+            is_lock = part.name.startswith(HAIR) and part.strand_radius > 0.0
+            least = CUT_LOCKS if is_lock else 0.0
+            self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < -least])
         half = self._halves[side, part.name]
         if isinstance(part, BentPart):
             half.vertices = part.vertices

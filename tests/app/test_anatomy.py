@@ -208,6 +208,18 @@ def test_the_whole_side_is_the_usual_picture(studio, pose, view):
     assert shown.mean() > 0.05
 
 
+def test_no_locks_of_hair_float_above_the_opened_side(studio):
+    """Locks of the whole side begin far enough from the cut that their ends do not pass it."""
+    scene = posed(studio.scene)
+    middle = float(np.median(scene.rest_positions[:, 0]))
+    opened = studio.pipeline.anatomy.dissect(AnatomyView(STRUCTURES, 0.12, "right"))
+    locks = [each.part for each in opened.parts if each.part.name == "hair_locks"]
+    assert locks
+    for part in locks:
+        assert len(part.faces) > 1000
+        assert part.vertices[part.faces, 0].min() > middle + 5.0
+
+
 def pixels_of(camera, points):
     """Column and row of points of the world in the picture."""
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(
