@@ -187,9 +187,9 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         thick = tied_width + (1.0 - tied_width) * free
         root_width = 1.0  # thickness on the scalp, as a fraction of the full thickness
         thick += (root_width - tied_width) * (1.0 - smooth_step(0.0, tie_distance, far))
-        thick *= np.sqrt(1.0 - 0.97 * t**4)
+        thick *= np.sqrt(1.0 - 0.9995 * t**3)
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
-        tail_hem = 28.0  # [mm] over which tips thin out
+        tail_hem = 12.0  # [mm] over which tips thin out
         dense = np.minimum(far / root_depth, (far[-1] - far) / tail_hem)
         # Number of locks, width of a lock [mm], depth of the grooves between locks as a fraction
         # of the radius, and turns of the locks around the axis.
@@ -215,6 +215,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     upward = unit_vectors(np.cross(RIGHT, ways))
     ring = np.cos(turn) * upward + np.sin(turn) * np.cross(ways, upward)
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
+    places[-1] = places[0]  # to the bit, or light shines through the seam
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = count * wide * place[..., 0] / (2.0 * np.pi)
@@ -259,7 +260,13 @@ def _layers(
     number = np.arange(places.size // 3).reshape(shape[:2])
     out = unit_vectors(points - points.mean(axis=0))
     outward_share = 0.01  # keeps normals defined where strands meet and triangles have no area
-    normals = unit_vectors(vertex_normals(points, grid_faces(number)) + outward_share * out)
+    normals = vertex_normals(points, grid_faces(number)).reshape(shape)
+    if np.array_equal(places[0], places[-1]):  # around a tail or a knot
+        # Both sides of the seam have one normal, so layers have no gaps there.
+        seam = unit_vectors(normals[0] + normals[-1])
+        normals[0] = seam
+        normals[-1] = seam
+    normals = unit_vectors(normals.reshape(-1, 3) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # fraction of the thickness between the first and the last layer
     along = short.FINE * _along(places)

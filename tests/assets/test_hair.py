@@ -102,6 +102,21 @@ def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
     assert shines["short"] == shines["brushed"] == 0.12
 
 
+@pytest.mark.parametrize("cut", ["tailed", "knotted", "topknot"])
+def test_layers_of_tied_hair_have_no_gap_at_their_seam(cut):
+    """First and last strand have equal points, normals and layers; light shone through."""
+    tied = hair_of(haired(cut), HAIR + "_tied")
+    point_count = 40
+    for each in (tied.vertices, tied.normals, tied.striation[:, 2:5]):
+        np.testing.assert_allclose(each[:point_count], each[-point_count:], atol=1e-6)
+
+
+def test_a_tail_ends_in_a_point():
+    """Its end is thin, so nobody sees the hollow between its layers."""
+    tied = hair_of(haired("tailed"), HAIR + "_tied").vertices.reshape(-1, 40, 3)
+    assert np.ptp(tied[:, -1], axis=0).max() < 3.0  # [mm]
+
+
 def test_a_ponytail_touches_no_skin_below():
     """A ponytail hangs behind the ears without touching neck and shoulders."""
     person = haired("tailed")
