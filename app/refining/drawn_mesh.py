@@ -124,18 +124,16 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     """
     has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
     is_open = refinement.refiner is None and not refinement.options
-    is_large = len(scene.faces) >= LARGE_MESH
-    suits_card = has_card and is_open and is_large
+    suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
     asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
-    attributes = _attributes_of(scene)
-    refiner = refiner_for(scene, asked, attributes=attributes, is_outlined=not is_large)
+    refiner = refiner_for(scene, asked, attributes=_attributes_of(scene))
     plug_ins = plug_ins_of(*asked.on(scene.name))
     with reported(plug_ins):
         stream = _stream_for(scene, renderer, refiner)
 
     def resting() -> refine.Refiner:
         """Make a separate refiner, because some refiners depend on the frame before."""
-        twin = refiner_for(scene, asked, is_outlined=not is_large)
+        twin = refiner_for(scene, asked)
         twin.refine(scene.rest_positions)
         return twin
 

@@ -33,14 +33,11 @@ def refiner_for(
     refinement: Refinement,
     splits: Splits | None = None,
     attributes: Mapping[str, npt.NDArray[np.float32]] = NO_ATTRIBUTES,
-    *,
-    is_outlined: bool = True,
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 
     `splits`: fixed number of splits of each edge, shape (E,), in place of a criterion.
     `attributes`: name -> values of vertices at rest; ignored by a refiner without attributes.
-    `is_outlined`: whether a look rounds nostrils, which a refiner on the graphics card cannot.
     Raises UserError if the refiner refuses an option, and PlugInError if code of another package
     fails.
     """
@@ -55,7 +52,8 @@ def refiner_for(
             if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
             options["scheme"] = refine.DetailScheme(finer)
-        if is_outlined and refinement.refiner is None and options.get("scheme") == CUBIC:
+        # A refiner by name has no outlines, because the graphics card cannot draw them.
+        if refinement.refiner is None and options.get("scheme") == CUBIC:
             options["scheme"] = refine.CubicScheme(_outlines(scene))
         if splits is not None:
             options.pop("criterion", None)

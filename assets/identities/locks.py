@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
+from ...geometry.directions import unit_vectors
 from ..model import Part
 from ..smooth import Points
 
@@ -99,10 +100,10 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 2:6], hair.colours])
     at = sum(shares[:, k, None] * columns[corners[:, k]] for k in range(3))
     root, normal, way, dense, colour = np.split(at, [3, 6, 9, 10], axis=1)
-    normal = _unit(normal)
+    normal = unit_vectors(normal)
     long = np.sqrt(_dot(way, way))
     ahead = way / np.maximum(long, 1e-6)
-    across = _unit(np.cross(normal, ahead) + 1e-6)
+    across = unit_vectors(np.cross(normal, ahead) + 1e-6)
     # Neighbouring locks lean alike; each also has a small random lean.
     alone = chances[:, 3:6] - np.float32(0.5)
     lean = growth.spread * (waves(root, 0.45) + 1.2 * alone[:, :1])
@@ -113,7 +114,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     # Around a whorl, where layers stand up, locks lie in all directions.
     upright = np.clip(_dot(ahead, normal) - 0.6, 0.0, 0.4)
     stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
-    ahead = _unit(ahead + lean * across + rise * normal + stray)
+    ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
     reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
     length = np.minimum(reach * np.maximum(long, growth.least), growth.longest)
     t = np.linspace(0.0, 1.0, STATIONS, dtype=np.float32)[:, None]
@@ -121,7 +122,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     bend = length**2 / (2.0 * growth.radius) * normal
     start = root + (growth.root - MEAN) * way
     middles = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
-    along = _unit((length * ahead)[:, None] - 2.0 * t * bend[:, None])
+    along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
     thin *= 1.0 + 3.0 * upright
     half = (FINEST + (growth.half - FINEST) * thin)[:, None] * (1.0 - t**2)
@@ -150,13 +151,8 @@ def locks_on(hair: Part, growth: Growth) -> Part:
 
 
 def _dot(first: Floats64, second: Floats64) -> Floats64:
-    """Return dot products of vectors, (..., 3) -> (..., 1), in the fastest way: there are many."""
+    """Return dot products of vectors, (..., 3) -> (..., 1)."""
     return np.asarray(np.einsum("...i,...i->...", first, second)[..., None])
-
-
-def _unit(vectors: Floats64) -> Floats64:
-    """Scale vectors, (..., 3), to length 1; as `unit_vectors`, but faster."""
-    return np.asarray(vectors / np.maximum(np.sqrt(_dot(vectors, vectors)), 1e-6))
 
 
 @lru_cache(maxsize=4)

@@ -77,9 +77,11 @@ def drawn_by(monkeypatch, kind):
 def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
     """With a hardware driver, a large mesh in a look is refined on the card automatically.
 
-    The picture is the same.
+    The picture is that of the same refiner on the processor. Only the built-in head's nostrils,
+    whose rims a look rounds, would differ, and this head is not large.
     """
     smooth = Refinement("smooth")
+    processor = pipeline.bind(Refinement("smooth", "kahler"))
     count = len(pipeline.scene.faces)
     monkeypatch.setattr(drawn_mesh, "LARGE_MESH", count)
     drawn_by(monkeypatch, "software")
@@ -88,9 +90,10 @@ def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
     now = pipeline.bind(smooth)
     assert isinstance(now.refiner, KahlerGl)
     assert not isinstance(before.refiner, KahlerGl)
-    pictures = [image(pipeline, each, render.Style()).astype(int) for each in (before, now)]
+    pictures = [image(pipeline, each, render.Style()).astype(int) for each in (processor, now)]
     assert np.abs(pictures[0] - pictures[1]).max() <= 2
-    assert now.caption == before.caption
+    assert now.triangle_count == processor.triangle_count
+    assert now.label == before.label
     for other in (Refinement("smooth", "kahler"), replace(smooth, options={"blend": False})):
         assert not isinstance(pipeline.bind(other).refiner, KahlerGl)
     monkeypatch.setattr(drawn_mesh, "LARGE_MESH", count + 1)
