@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers64, Unsigned8
-from .gltf_file import DRACO, GltfFile, entry, packed
+from .gltf_file import GltfFile, entry
 from .gltf_painter import GltfPainter
 from .pictures import Texture
 from .topology import strip_triangles, unique_points
@@ -198,9 +198,6 @@ class _Reader:
         """Return a node's primitive, by its number in the mesh. weights: of its morph targets."""
         primitive = self._document.meshes[self._document.nodes[number].mesh].primitives[which]
         attributes = vars(primitive.attributes)
-        accessor = self._document.accessors[attributes["POSITION"]]
-        if DRACO in (primitive.extensions or {}) and accessor.bufferView is None:
-            raise packed(DRACO)
         stored = self._file.values(attributes["POSITION"]).astype(np.float64)
         points = stored
         motion = np.zeros((len(stored), 4))

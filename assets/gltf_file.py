@@ -1,8 +1,8 @@
 """Access to a glTF file: its document, the numbers of accessors, the files of pictures.
 
 pygltflib reads the document. The data are in the GLB file itself, in text within the document, or
-in files beside it. Numbers are returned decoded: normalized integers become fractions, sparse rows
-are filled in, and interleaved rows are separated.
+in files beside it; gltf_content.py decompresses them. Numbers are returned decoded: normalized
+integers become fractions, sparse rows are filled in, and interleaved rows are separated.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 and 4, and its registry of extensions.
 Differs from it: an accessor of matrices holds only matrices of 4 x 4 floats.
@@ -10,24 +10,18 @@ Differs from it: an accessor of matrices holds only matrices of 4 x 4 floats.
 
 from __future__ import annotations
 
-import base64
-import struct
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote_to_bytes
 
 import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .errors import AssetError
-from .user_files import MOST_VERTICES, beside, named, read_file, text_with_names
-
-COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-DRACO = "KHR_draco_mesh_compression"
-MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
+from .gltf_content import COMPONENTS, content_of, plain_chunks
+from .user_files import MOST_VERTICES, named
 
 
 class GltfFile:
@@ -43,7 +37,7 @@ class GltfFile:
         """
         import pygltflib  # imported late, so that loading the built-in head is fast
 
-        text, self._data = chunks_of(content)
+        text, self._data = plain_chunks(content, folder)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # pygltflib would print them
             self.document = pygltflib.GLTF2.from_json(
@@ -60,10 +54,7 @@ class GltfFile:
             *("KHR_mesh_quantization", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
             *("KHR_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"),
         )
-        packed_kinds = (DRACO, *MESHOPT)
         for name in self.document.extensionsRequired or []:
-            if name in packed_kinds:
-                raise packed(name)
             if not str(name).startswith(readable):
                 raise AssetError(
                     f"needs the extension {named(name)}, which is not read here; export it without"
@@ -127,45 +118,23 @@ class GltfFile:
     def _view(self, number: int) -> memoryview:
         """A part of a buffer."""
         view = self.document.bufferViews[number]
-        compressed = [name for name in MESHOPT if name in (view.extensions or {})]
         start = view.byteOffset or 0
-        data = self._buffer(view.buffer, compressed)
+        data = self._buffer(view.buffer)
         if start < 0 or start + view.byteLength > len(data):
             raise ValueError(f"buffer {view.buffer} ends before its data do")
         return memoryview(data)[start : start + view.byteLength]
 
-    def _buffer(self, number: int, compressed: list[str]) -> bytes:
-        """The bytes of a buffer; compressed: extensions that may explain their absence."""
+    def _buffer(self, number: int) -> bytes:
+        """The bytes of a buffer."""
         if number not in self._buffers:
             uri = self.document.buffers[number].uri
             if uri is not None:
                 self._buffers[number] = content_of(uri, self._folder, "buffer")
             elif number == 0 and self._data is not None:
                 self._buffers[number] = self._data
-            elif compressed:
-                raise packed(compressed[0])
             else:
                 raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
         return self._buffers[number]
-
-
-def content_of(uri: str, folder: Path, kind: str) -> bytes:
-    """The data of a URI, or of the file that it names.
-
-    folder: the folder of the document. kind: kind of the data, for messages. Raises AssetError for
-    an unreadable file.
-    """
-    if uri.startswith("data:"):
-        head, _, data = uri.partition(",")
-        plain = unquote_to_bytes(data)
-        return base64.b64decode(plain) if head.endswith(";base64") else plain
-    name = text_with_names(unquote_to_bytes(uri)).decode()
-    path = beside(folder, name)
-    try:
-        most_megabytes = 100
-        return read_file(path, kind=kind, most=most_megabytes)
-    except AssetError as error:
-        raise AssetError(f"its {kind} {named(name)}: {error}") from None
 
 
 def entry(part: Any, name: str) -> Any:
@@ -177,30 +146,6 @@ def shares(rows: npt.NDArray[Any]) -> Floats64:
     """Integers as fractions of their greatest value: 0 to 1, or signed -1 to 1."""
     greatest = np.iinfo(rows.dtype).max
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)
-
-
-def packed(name: str) -> AssetError:
-    """Return the error for a mesh that an extension compresses."""
-    return AssetError(f"is compressed ({name}); export it without compression")
-
-
-def chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
-    """The document of a glTF or GLB file and its binary data, None if it has none."""
-    if not content.startswith(b"glTF"):  # the first bytes of a GLB file
-        return content, None
-    version, length = struct.unpack_from("<II", content, 4)
-    if version != 2:
-        raise AssetError(f"is glTF {version}; export it as glTF 2.0")
-    found: dict[bytes, bytes] = {}
-    place = 12
-    while place + 8 <= min(length, len(content)):
-        size, kind = struct.unpack_from("<I4s", content, place)
-        place += 8
-        if place + size > len(content):
-            raise ValueError("the file ends too early")
-        found.setdefault(kind, content[place : place + size])  # a second chunk of a kind is ignored
-        place += size
-    return found[b"JSON"], found.get(b"BIN\0")
 
 
 def _tidied(entries: Mapping[str, Any]) -> dict[str, Any]:

@@ -25,6 +25,7 @@ EXTRAS = {
     "export": ("h5py", "pxr"),
     "passes": ("OpenEXR",),
     "cluster": ("distributed",),
+    "compression": ("DracoPy", "meshopt"),
 }
 """The modules that `pip install '.[EXTRA]'` installs."""
 PARTS_OF_COMMANDS = {

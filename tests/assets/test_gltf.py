@@ -350,19 +350,6 @@ def _required(name):
     return change
 
 
-def _draco_alone(maker):
-    _draco_beside(maker)
-    del maker.parts["accessors"][0]["bufferView"]
-
-
-def _meshopt(maker):
-    view = maker.parts["bufferViews"][0]
-    view["buffer"] = 1
-    view["extensions"] = {"EXT_meshopt_compression": {"buffer": 0, "byteLength": 4}}
-    own = {"byteLength": len(maker.data)}
-    maker.parts["buffers"] = [own, {"byteLength": 48, "extensions": {}}]
-
-
 def _no_data(maker):
     maker.parts["bufferViews"][0]["buffer"] = 1
     maker.parts["buffers"] = [{"byteLength": len(maker.data)}, {"byteLength": 48}]
@@ -397,14 +384,7 @@ def _circle(maker):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (_required("KHR_draco_mesh_compression"), r"is compressed \(KHR_draco_mesh_compression\)"),
-        (
-            _required("EXT_meshopt_compression"),
-            r"is compressed \(EXT_meshopt_compression\); export",
-        ),
         (_required("ACME_wind"), "needs the extension ACME_wind, which is not read here; export"),
-        (_draco_alone, r"is compressed \(KHR_draco_mesh_compression\); export"),
-        (_meshopt, r"is compressed \(EXT_meshopt_compression\); export"),
         (_no_data, "its buffer 1 is missing; export it as one file"),
         (_elsewhere, "names the file '../../etc/passwd'; it must lie in the mesh's folder"),
         (_lost, "its buffer head data.bin: no such buffer file"),
