@@ -72,9 +72,9 @@ def border_vertices(faces: Faces) -> Integers64:
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
-    """Triangles between neighbouring rows of vertex indices (r, n); closed: rows are rings.
+    """Triangles between neighbouring rows of vertex indices (r, n); closed: each row is a ring.
 
-    a--d   Vertices a and d are of a row, b and c of the next one: a b c, then a c d.
+    a--d   a and d are neighbours in a row, b and c in the next row. Triangles: a b c, then a c d.
     | \\|
     b--c
     """

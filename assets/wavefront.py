@@ -1,6 +1,6 @@
 """Read the surface of a Wavefront OBJ file: points, polygons, and places of its pictures.
 
-trimesh's reader counts relative numbers from the end of the file, doubles vertices where the
+trimesh's reader counts relative indices from the end of the file, doubles vertices where the
 texture has a seam or the material changes, and opens the files that materials name. Here a vertex
 keeps its number and its neighbours, and no other file is opened.
 
@@ -119,15 +119,15 @@ def _unusable(number: int, line: bytes) -> AssetError:
     shown = line[:excerpt_length].decode(errors="ignore").strip()
     return AssetError(
         f"line {number}: '{named(shown)}' cannot be used; allowed are 'v x y z', 'vt u v', and 'f' "
-        "with three or more vertex numbers, from 1 on, or from -1 back"
+        "with three or more vertex indices, from 1 on, or from -1 back"
     )
 
 
 def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """For each corner the numbers of its vertex, texture coordinates and normal; -1 for none.
+    """For each corner, the indices of its vertex, texture coordinates and normal; -1 for none.
 
     counts: how many of each the file has defined so far. The file counts from 1, or from the last
-    defined entry backwards. Raises ValueError for other numbers.
+    defined entry backwards. Raises ValueError for other indices.
     """
     if len(fields) < 3:
         raise ValueError
@@ -143,7 +143,7 @@ def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[in
 
 
 def _optional(number: int, count: int) -> int:
-    """The number of texture coordinates or of a normal, from 0; -1 for none."""
+    """The index of texture coordinates or of a normal, from 0; -1 for none."""
     return number - 1 if number >= 0 else max(count + number, -1)
 
 

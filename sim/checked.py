@@ -47,7 +47,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
     return result
 
 
-def vertex_numbers(
+def vertex_indices(
     what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
 ) -> Integers64:
     """Copy vertex indices, in rows; wanted: the allowed values, in words."""
@@ -57,7 +57,7 @@ def vertex_numbers(
         raise ValueError(f"{what}: was {array.dtype} of shape {array.shape}, must be {wanted}")
     if array.size and (array.min() < 0 or array.max() >= vertex_count):
         raise ValueError(
-            f"{what}: vertex numbers run from {array.min()} to {array.max()}, "
+            f"{what}: vertex indices run from {array.min()} to {array.max()}, "
             f"allowed are 0 to {vertex_count - 1}"
         )
     return np.array(array, dtype=np.int64, order="C")

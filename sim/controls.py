@@ -208,7 +208,7 @@ class Controls:
         self._speed[:] = 0.0
 
     def copy_from(self, other: Controls) -> None:
-        """Take over values and activations from the controls of the same face."""
+        """Copy values and activations from another `Controls` of the same face."""
         self._values[:] = other._values
         self._wanted[:] = other._wanted
         self._activation[:] = other._activation

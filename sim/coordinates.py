@@ -44,7 +44,7 @@ class FaceSpace:
         if min(span, float(np.linalg.norm(lateral)), float(np.linalg.norm(upward))) < 1e-9:
             raise ValueError(
                 "landmarks: eyes, nasion and mouth corners must be different points; "
-                "check that the 68 vertex numbers belong to this mesh"
+                "check that the 68 vertex indices belong to this mesh"
             )
         lateral = lateral / np.linalg.norm(lateral)
         upward = upward - lateral * (lateral @ upward)

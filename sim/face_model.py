@@ -75,9 +75,9 @@ class FaceModel(Foundation):
 def build_face_model(head: Any) -> FaceModel:
     """Build a face from a mesh; raises ValueError, which names the head's wrong attribute."""
     foundation = foundation_of(head)
-    if foundation.landmark_numbers is None:
+    if foundation.landmark_indices is None:
         return build_plain(foundation)
-    return build_face(foundation, foundation.landmark_numbers)
+    return build_face(foundation, foundation.landmark_indices)
 
 
 def build_plain(foundation: Foundation) -> FaceModel:
@@ -93,8 +93,11 @@ def build_plain(foundation: Foundation) -> FaceModel:
     )
 
 
-def build_face(foundation: Foundation, numbers: Integers64) -> FaceModel:
-    """A face with lips, and with lids over its eyeballs; numbers: of landmarks, shape (68,)."""
+def build_face(foundation: Foundation, landmark_indices: Integers64) -> FaceModel:
+    """Build a face with lips, and with lids over its eyeballs.
+
+    landmark_indices: vertex indices of the landmarks, shape (68,).
+    """
     surface = foundation.surface
     landmarks = foundation.landmarks
     eyeballs = foundation.skull.eyeballs
@@ -105,7 +108,7 @@ def build_face(foundation: Foundation, numbers: Integers64) -> FaceModel:
     return _assembled(
         foundation,
         lids=lids,
-        tongue=place_tongue(foundation.parts, foundation.space, numbers),
+        tongue=place_tongue(foundation.parts, foundation.space, landmark_indices),
         corners=landmarks[list(INNER_CORNERS)],
         turns=_turning_share(surface, landmarks),
         closed_weight=_closed_weight(surface, landmarks, foundation.skull.mandible_weight),

@@ -63,7 +63,7 @@ class Foundation:
     skull: Skull
     controls: tuple[Control, ...]
     layers: Layers
-    landmark_numbers: Integers64 | None  # (68,) vertices; None: a plain mesh
+    landmark_indices: Integers64 | None  # (68,) vertices; None: a plain mesh
     parts: Any  # as the head has them
 
 
@@ -80,11 +80,11 @@ def foundation_of(head: Any) -> Foundation:
     """Check a head, and place its bones; raises ValueError, which names the wrong attribute."""
     vertices, faces = mesh_of("head", head)
     given = Given(*(getattr(head, name, None) for name in Given._fields))
-    numbers = _landmark_numbers(given.landmarks, len(vertices))
+    landmark_indices = _landmark_indices(given.landmarks, len(vertices))
     rig = read_rig(given.rig or {})
-    if numbers is None:
+    if landmark_indices is None:
         return _plain_foundation(vertices, faces, given, rig)
-    return _face_foundation(vertices, faces, given, rig, numbers)
+    return _face_foundation(vertices, faces, given, rig, landmark_indices)
 
 
 def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) -> Foundation:
@@ -108,18 +108,18 @@ def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) 
         skull=skull,
         controls=controls,
         layers=_read_layers((), controls),  # tables of layers would have no controls to refer to
-        landmark_numbers=None,
+        landmark_indices=None,
         parts=given.parts,
     )
 
 
 def _face_foundation(
-    vertices: Floats64, faces: Faces, given: Given, rig: Rig, numbers: Integers64
+    vertices: Floats64, faces: Faces, given: Given, rig: Rig, landmark_indices: Integers64
 ) -> Foundation:
     """Foundation of a face; landmarks give the bones and eyes that the head lacks."""
-    space = FaceSpace.from_landmarks(vertices[numbers])
+    space = FaceSpace.from_landmarks(vertices[landmark_indices])
     surface = build_surface(space.to_standard(vertices), faces)
-    landmarks = space.to_standard(vertices[numbers])
+    landmarks = space.to_standard(vertices[landmark_indices])
     side = lip_side(surface, landmarks)
     axis = _optional("jaw_axis", given.jaw_axis, (2, 3))
     weight = _optional("mandible_weight", given.mandible_weight, (len(vertices),))
@@ -146,7 +146,7 @@ def _face_foundation(
         skull=skull,
         controls=controls,
         layers=_read_layers(tables, controls),
-        landmark_numbers=numbers,
+        landmark_indices=landmark_indices,
         parts=given.parts,
     )
 
@@ -175,17 +175,17 @@ def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
     if len(vertices) == 0:
         raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")
     wanted = "integers (F, 3)"
-    faces = checked.vertex_numbers(f"{what}.faces", given.faces, (None, 3), len(vertices), wanted)
+    faces = checked.vertex_indices(f"{what}.faces", given.faces, (None, 3), len(vertices), wanted)
     return vertices, faces.astype(np.int32)
 
 
-def _landmark_numbers(given: Any, vertex_count: int) -> Integers64 | None:
+def _landmark_indices(given: Any, vertex_count: int) -> Integers64 | None:
     """Return the checked vertex indices of the 68 landmarks, None if the head has none."""
     if given is None:
         return None
-    wanted = f"{LANDMARK_COUNT} vertex numbers"
+    wanted = f"{LANDMARK_COUNT} vertex indices"
     shape = (LANDMARK_COUNT,)
-    return checked.vertex_numbers("head.landmarks", given, shape, vertex_count, wanted)
+    return checked.vertex_indices("head.landmarks", given, shape, vertex_count, wanted)
 
 
 def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Floats64 | None:

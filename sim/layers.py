@@ -92,7 +92,10 @@ NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
 def share_of_whole(value: float, whole: float) -> float:
-    """Return `value` / `whole`, 0 .. 1; it is 0 if `whole`, the `share_of` control, is 0."""
+    """Return `value` / `whole`, limited to 0 .. 1, and 0 if `whole` is 0.
+
+    whole: value of the control that `share_of` names.
+    """
     return min(value, max(whole, 0.0)) / max(whole, LEAST_WHOLE)
 
 

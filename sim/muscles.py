@@ -175,7 +175,7 @@ def attach_to_fibre(
 def attach_to_ring(
     muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
-    """Attach points to a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
+    """Attach points to a sphincter: an elliptic ring around landmarks, which contracts to a centre."""
     _, up, down = muscle.radii
     rho, weight = _within_ring(muscle, landmarks, side, places)
     on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip

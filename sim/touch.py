@@ -40,23 +40,23 @@ class Touch:
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError if these arguments do not fit together.
         """
-        wanted = "different vertex numbers, shape (n,)"
+        wanted = "different vertex indices, shape (n,)"
         count = len(self._positions)
-        numbers = checked.vertex_numbers("vertices", vertices, (None,), count, wanted)
-        points = checked.numbers("targets", targets, (len(numbers), 3))
-        share = checked.numbers("firmness", firmness, (len(numbers),))
-        if not ((share >= 0.0) & (share <= 1.0)).all():
+        indices = checked.vertex_indices("vertices", vertices, (None,), count, wanted)
+        points = checked.numbers("targets", targets, (len(indices), 3))
+        firm = checked.numbers("firmness", firmness, (len(indices),))
+        if not ((firm >= 0.0) & (firm <= 1.0)).all():
             raise ValueError(
-                f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
+                f"firmness: runs from {firm.min():g} to {firm.max():g}, must be from 0 to 1"
             )
-        if len(np.unique(numbers)) < len(numbers):
+        if len(np.unique(indices)) < len(indices):
             raise ValueError(f"vertices: some occur twice, must be {wanted}")
-        away = self._in_standard_space(points - self._positions[numbers])
-        self._vertices = numbers
-        self._to = self._state.x[numbers] + away
+        away = self._in_standard_space(points - self._positions[indices])
+        self._vertices = indices
+        self._to = self._state.x[indices] + away
         # In rad/s, of the firmest pull: stronger than the skin, and stable at the longest substep.
         finger_rate = 350.0
-        self._stiffness = share * self._model.skin.mass[numbers] * finger_rate**2
+        self._stiffness = firm * self._model.skin.mass[indices] * finger_rate**2
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""

@@ -242,7 +242,7 @@ def slit() -> Mesh:
     """A flat rectangle of unit cells around the origin, with a slit along x; symmetric in x and y.
 
     The two cells at each end of the middle row are not cut. The lower side of the slit has the
-    vertex numbers of a grid without slit; the upper side has the last numbers.
+    vertex indices of a grid without slit; the upper side has the last indices.
     """
     columns = 10
     rows = 6

@@ -108,7 +108,7 @@ def test_frames_without_a_face_are_left_out(name, tmp_path):
     assert take.peak("browDownLeft") < 0.1
 
 
-LANDMARKS = CASES / "own_landmarks.json"  # numbers of vertices
+LANDMARKS = CASES / "own_landmarks.json"  # vertex indices
 POINTS = CASES / "own_landmark_points.json"  # points [m]
 
 

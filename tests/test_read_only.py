@@ -118,7 +118,7 @@ def test_nothing_of_a_refiner_can_be_written(name, head):
 
 
 def test_one_in_place_addition_harms_nobody(head):
-    """Vertex numbers for compiled code are read-only, with numpy's own error."""
+    """Vertex indices for compiled code are read-only, with numpy's own error."""
     simulation = sim.create(head)
     refiner = refine.create("kahler", simulation.faces, simulation.rest_positions, coherent=True)
     for array in (

@@ -57,7 +57,9 @@ def solved(
 
 
 def sided(scene: Scene, layer: str) -> tuple[str, ...]:
-    """Return the controls of a layer, in which AU12_left and AU12_right stand for AU12.
+    """Return the controls of a layer; a paired control (AU12) is replaced by both sides.
+
+    For example, AU12_left and AU12_right are returned, but not AU12.
 
     Raises UserError for a head without such controls.
     """

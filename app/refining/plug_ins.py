@@ -1,7 +1,7 @@
-"""Plug-ins of other packages in a refinement, and the attribution of their errors.
+"""Plug-ins of a refinement: which one has raised an error.
 
-A criterion, a scheme or a refiner may come from any package, or be registered by a program. An
-error in the code of a plug-in is reported in one line, with the name of the plug-in.
+A criterion, a scheme or a refiner may come from another package, or from a program that registers
+it. An error in its code is reported in one line, with the name of the plug-in.
 """
 
 from __future__ import annotations

@@ -93,17 +93,17 @@ class FileBody:
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
-        for role, numbers in self._pieces.items():
+        for role, indices in self._pieces.items():
             if role in EYES and not self._eyes_are_nodes:
                 pivot = self.pivots[role]
-                turned = (self.rest[numbers] - pivot) @ pose.matrices[role][:3, :3].T
-                moved[numbers] = pivot + turned
+                turned = (self.rest[indices] - pivot) @ pose.matrices[role][:3, :3].T
+                moved[indices] = pivot + turned
             elif role == "lower_teeth":
-                moved[numbers] = moved_points(mandible, self.rest[numbers])
+                moved[indices] = moved_points(mandible, self.rest[indices])
             elif role == "mouth":
-                moved[numbers] = self._between_jaws(numbers, mandible)
+                moved[indices] = self._between_jaws(indices, mandible)
             elif role == TONGUE:
-                moved[numbers] = moved_points(mandible, pose.parts[TONGUE].astype(np.float64))
+                moved[indices] = moved_points(mandible, pose.parts[TONGUE].astype(np.float64))
         if self._lashes is not None:
             self._lashes.follow(FaceNow(pose.skin, pose.matrices))
             moved[self._pieces["on_skin"]] = self._lashes.vertices
@@ -120,12 +120,12 @@ class FileBody:
         normals: Floats64 = vertex_normals(points, self.faces)[self._same]
         return normals
 
-    def _between_jaws(self, numbers: Integers, mandible: Floats64) -> Floats64:
+    def _between_jaws(self, indices: Integers, mandible: Floats64) -> Floats64:
         """Move n vertices between the jaws; low vertices far from the throat follow the mandible.
 
         mandible: matrix (4, 4). Returns positions [mm], (n, 3).
         """
-        points = self.rest[numbers]
+        points = self.rest[indices]
         weights = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
         depth = points[:, 2] - points[:, 2].min()
         # At the throat the weight is 0.
@@ -135,18 +135,18 @@ class FileBody:
 
     def _attached(self, head: FittedHead) -> SkinPart:
         """Attach lashes and brows to the skin; a vertex turns with its piece's nearest root."""
-        numbers = self._pieces["on_skin"]
-        points = self.rest[numbers]
+        indices = self._pieces["on_skin"]
+        points = self.rest[indices]
         distance = closest_points(points, head.vertices, head.faces).distances
-        piece = pieces_of(self.faces, len(self.rest))[numbers]
-        roots = np.zeros(len(numbers), np.int32)
+        piece = pieces_of(self.faces, len(self.rest))[indices]
+        roots = np.zeros(len(indices), np.int32)
         for each in np.unique(piece):
             members = np.flatnonzero(piece == each)
             near = members[distance[members] < distance[members].min() + ROOTED]
             roots[members] = near[scipy.spatial.cKDTree(points[near]).query(points[members])[1]]
-        place = np.full(len(self.rest), -1, np.int32)
-        place[numbers] = np.arange(len(numbers))
-        faces = place[self.faces]
+        local_index = np.full(len(self.rest), -1, np.int32)
+        local_index[indices] = np.arange(len(indices))
+        faces = local_index[self.faces]
         part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM, roots)
         return SkinPart(part, head.vertices, head.faces)
 
@@ -165,13 +165,13 @@ class _Bag:
     skin between the lids does not pierce them when they shut.
     """
 
-    def __init__(self, numbers: Integers, is_eye: Flags, faces: Integers32, rest: Floats64) -> None:
-        depth = rest[numbers, 2]
+    def __init__(self, indices: Integers, is_eye: Flags, faces: Integers32, rest: Floats64) -> None:
+        depth = rest[indices, 2]
         is_deep = ~is_eye
         if is_deep.any():
             is_deep &= depth < np.median(depth[is_deep])
-        self.deep = numbers[is_deep]
-        self._free = numbers[~is_deep]
+        self.deep = indices[is_deep]
+        self._free = indices[~is_deep]
         sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         count = len(rest)
         links = scipy.sparse.coo_array((np.ones(len(sides)), sides.T), (count, count)).tocsr()
@@ -205,23 +205,23 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
     """Return, for each vertex of a file, its index in the skin, or -1, (V,)."""
-    place = np.full(len(same), -1, np.int64)
-    place[head.file_vertices] = np.arange(len(head.file_vertices))
-    return np.where(place >= 0, place, place[same])
+    local_index = np.full(len(same), -1, np.int64)
+    local_index[head.file_vertices] = np.arange(len(head.file_vertices))
+    return np.where(local_index >= 0, local_index, local_index[same])
 
 
 def with_own_tongue(
-    head: FittedHead, rest: Floats64, numbers: Integers, faces: Integers32
+    head: FittedHead, rest: Floats64, indices: Integers, faces: Integers32
 ) -> tuple[Part, ...]:
     """Replace the built-in tongue in a head's parts by the file's tongue, which bends like it.
 
-    rest: all vertices of the file [mm], (V, 3). numbers: vertices of the tongue, (n,). faces: all
+    rest: all vertices of the file [mm], (V, 3). indices: vertices of the tongue, (n,). faces: all
     triangles of the file, (F, 3).
     """
-    place = np.full(len(rest), -1, np.int32)
-    place[numbers] = np.arange(len(numbers))
-    own = place[faces]
-    tongue = _part(TONGUE, rest[numbers], own[(own >= 0).all(axis=1)], "mandible", None)
+    local_index = np.full(len(rest), -1, np.int32)
+    local_index[indices] = np.arange(len(indices))
+    own = local_index[faces]
+    tongue = _part(TONGUE, rest[indices], own[(own >= 0).all(axis=1)], "mandible", None)
     return tuple(tongue if part.name == TONGUE else part for part in head.parts)
 
 

@@ -22,7 +22,10 @@ STEEPEST_TENTHS = 30  # largest slope, in tenths of the mean speed
 
 
 class Easing(NamedTuple):
-    """The slopes at the previous and the current key, in tenths of the mean speed; or a hold."""
+    """The slopes of a curve at the previous and the current key, in tenths of the mean speed.
+
+    is_held: the value stays at the previous key until the current one; slopes have no effect.
+    """
 
     start: int
     end: int
@@ -65,7 +68,10 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
 
 
 def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
-    """Return fractions of changes at fractions of the time, both (N,); rows: easings, (N, 3)."""
+    """Return the fractions of each change, (N,), at fractions of its time, (N,).
+
+    rows: easings, (N, 3).
+    """
     start = rows[:, 0] / 10
     end = rows[:, 1] / 10
     return np.where(rows[:, 2], fractions // 1.0, hermite(fractions, start, end))

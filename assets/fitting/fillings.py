@@ -46,16 +46,16 @@ class Filling:
         return f"its {names} filled by {count} triangles, which are left out; an avatar has them"
 
 
-def filling_of(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> Filling | None:
+def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling | None:
     """Find all triangles that fill the mouth or an eye of a mesh; None if there are none.
 
-    numbers: vertex indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
+    indices: vertex indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     to_face = placed(landmarks, load("head"))
     vertices = to_face.points(mesh.vertices)
     points = to_face.points(landmarks)
     piece = pieces_of(mesh.faces, len(mesh.vertices))
-    own = np.flatnonzero(piece[mesh.faces[:, 0]] == np.bincount(piece[numbers]).argmax())
+    own = np.flatnonzero(piece[mesh.faces[:, 0]] == np.bincount(piece[indices]).argmax())
     openings = []
     triangles = []
     for name, chains in OPENINGS.items():

@@ -46,28 +46,28 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     """
     head = load("head")
     similarity = placing(known)
-    numbers = sorted(known)
-    given = similarity.points(np.array([known[number] for number in numbers]))
+    indices = sorted(known)
+    given = similarity.points(np.array([known[number] for number in indices]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
     # The landmarks and the face around them are fitted to the mesh.
     chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
-    face = LikelyFace(head, vertices, faces, numbers, given, chosen)
+    face = LikelyFace(head, vertices, faces, indices, given, chosen)
     face.fit()
     own = face.vertices
     points = own[chosen]
-    known_points = own[head.landmarks[numbers]]
-    is_free = ~np.isin(np.arange(len(chosen)), numbers)
+    known_points = own[head.landmarks[indices]]
+    is_free = ~np.isin(np.arange(len(chosen)), indices)
     laid = own
     stiffnesses = (1e3, 300.0, 100.0)  # [mm]; smoothing of the warp in each step
     for stiffness in stiffnesses:
         feet = _feet(laid, head, chosen, face.mesh, faces)
         is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < FARTHEST_MATCH)
-        give = np.concatenate([np.zeros(len(numbers)), np.full(is_laid.sum(), stiffness)])
+        give = np.concatenate([np.zeros(len(indices)), np.full(is_laid.sum(), stiffness)])
         source = np.vstack([known_points, points[is_laid]])
         laid = ThinPlateSpline(source, np.vstack([face.given, feet[is_laid]]), give).points(own)
     found = _feet(laid, head, head.landmarks, face.mesh, faces)
-    found[numbers] = face.given
+    found[indices] = face.given
     return similarity.inverse.points(face.moved.inverse.points(found))
 
 
@@ -97,9 +97,9 @@ def placing(known: Known) -> Similarity:
 def _laid(known: Known) -> tuple[Similarity, Floats64]:
     """Find the similarity from known landmarks to the built-in ones, and errors [mm], (n,)."""
     head = load("head")
-    numbers = sorted(known)
-    own = head.vertices[head.landmarks[numbers]]
-    given = np.array([known[number] for number in numbers], dtype=np.float64)
+    indices = sorted(known)
+    own = head.vertices[head.landmarks[indices]]
+    given = np.array([known[number] for number in indices], dtype=np.float64)
     if not np.ptp(given, axis=0).any():
         raise AssetError("all landmarks are one point; give each its own place")
     similarity = Similarity.between(given, own)
@@ -140,7 +140,7 @@ def _feet(
 ) -> Floats64:
     """Find, for n vertices of the warped head, the nearest points of a mesh, (n, 3).
 
-    laid: vertices of the warped head. chosen: numbers of the n vertices.
+    laid: vertices of the warped head. chosen: indices of the n vertices.
     """
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)

@@ -116,14 +116,16 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     if landmarks is None:
         return _fit_known(found, path)
     file = Path(landmarks)
-    numbers, points = read_landmarks(file, found)
+    indices, points = read_landmarks(file, found)
     try:
-        fitted = _fit_shut_or_not(found, (numbers, points), partial(read_landmarks, file))
+        fitted = _fit_shut_or_not(found, (indices, points), partial(read_landmarks, file))
     except AssetError as error:
         reason = error
-        are_faces = [is_face(found.vertices[numbers - first]) for first in (0, 1)]
+        are_faces = [is_face(found.vertices[indices - first]) for first in (0, 1)]
         if points is None and are_faces == [False, True]:
-            reason = AssetError("landmarks number vertices from 1; subtract 1 from each")
+            reason = AssetError(
+                "vertex indices of the landmarks count from 1; subtract 1 from each"
+            )
         raise AssetError(f"{named(mesh)}: {reason}") from None
     return replace(fitted, files=(path, file))
 
@@ -137,13 +139,13 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
     marks_of: function that returns the landmarks of a mesh with the same vertices, but other
         triangles.
     """
-    numbers, points = marks
-    places = mesh.vertices[numbers] if points is None else points
+    indices, points = marks
+    places = mesh.vertices[indices] if points is None else points
     try:
-        return fit(mesh, numbers, points=points)
+        return fit(mesh, indices, points=points)
     except CoveredError as error:
         reason = error
-    filling = filling_of(mesh, numbers, places)
+    filling = filling_of(mesh, indices, places)
     if filling is not None:
         opened = mesh.without(filling.triangles)
         fitted = _fit_shut_or_not(opened, marks_of(opened), marks_of)
@@ -152,10 +154,10 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
         raise reason
     parted = lips_parted(mesh, places)
     if parted is not None:
-        parted_numbers, parted_points = marks_of(parted)
+        parted_indices, parted_points = marks_of(parted)
         with contextlib.suppress(ShutMouthError):
-            return fit(parted, parted_numbers, points=parted_points)
-    cut = lip_cut(mesh, numbers, places)
+            return fit(parted, parted_indices, points=parted_points)
+    cut = lip_cut(mesh, indices, places)
     if cut is None:
         raise reason
     opened = cut.applied(mesh)
@@ -177,10 +179,10 @@ def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
 
     def marks_of(parted: Mesh) -> Marks:
         """Return the known landmarks; inner lips that were parted get vertices of their own lip."""
-        numbers = known.landmarks
-        nearest = nearest_vertices(mesh.vertices[numbers], parted.vertices, parted.faces)
+        indices = known.landmarks
+        nearest = nearest_vertices(mesh.vertices[indices], parted.vertices, parted.faces)
         inner_lips = np.arange(COUNT) >= 60
-        return np.where(inner_lips, nearest, numbers), None
+        return np.where(inner_lips, nearest, indices), None
 
     note = f"its vertices are those of {known.name}, whose landmarks are known"
     try:

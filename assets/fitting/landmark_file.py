@@ -50,8 +50,8 @@ OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
     """Read landmarks: vertex indices (68,), int32, and points (68, 3) [unit of the mesh] or None.
 
-    If the file holds points, the numbers are those of the nearest vertices. If it holds numbers,
-    the points are None.
+    If the file has points, the indices are those of the nearest vertices. If it has indices, the
+    points are None.
 
     Raises AssetError for a file that is missing, too long or not JSON, for another number of
     landmarks, for a vertex index out of range, and for a point off the mesh.
@@ -63,10 +63,10 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
                 f"landmark {found.index(None)} is null: {found.count(None)} of {COUNT} are not "
                 "marked yet; mark them in the window: `risorius view --head MESH`"
             )
-        if _are_numbers(found):
-            numbers = _numbers(found, len(mesh.vertices))
+        if _are_indices(found):
+            indices = _indices(found, len(mesh.vertices))
             # Triangles use only one of several coinciding vertices.
-            return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32), None
+            return indices if mesh.same is None else mesh.same[indices].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:
@@ -87,9 +87,9 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
         if not marked:
             return {}, frozenset()
         found = [found[marked[0]] if entry is None else entry for entry in found]
-        are_numbers = _are_numbers(found)
+        are_indices = _are_indices(found)
         count = len(mesh.vertices)
-        points = mesh.vertices[_numbers(found, count)] if are_numbers else _points(found)
+        points = mesh.vertices[_indices(found, count)] if are_indices else _points(found)
         guessed = document.get(GUESSED) if isinstance(document, dict) else None
         guesses = guessed if isinstance(guessed, list) else []
         is_guessed = frozenset(number for number in marked if number in guesses)
@@ -131,21 +131,21 @@ def _all_in(document: Any) -> list[Any]:
         has = f"{len(lists[0])} landmarks" if lists else "holds no list"
         raise AssetError(
             f'{has}; it must be {{"{KEY}": [...]}} with the {COUNT} iBug points in their order, '
-            "vertex numbers or points [x, y, z]"
+            "vertex indices or points [x, y, z]"
         )
     return lists[0]
 
 
-def _are_numbers(found: list[Any]) -> bool:
+def _are_indices(found: list[Any]) -> bool:
     return all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found)
 
 
-def _numbers(found: list[Any], count: int) -> Integers32:
+def _indices(found: list[Any], count: int) -> Integers32:
     vertex: Any = Annotated[int, Within(0, count - 1)]
     try:
         return np.array(_read_each(vertex, found), dtype=np.int32)
     except ValueError as error:
-        raise AssetError(f"{error}: number the vertices of this mesh from 0") from None
+        raise AssetError(f"{error}: count the vertices of this mesh from 0") from None
 
 
 def _points(found: list[Any]) -> Floats64:
@@ -153,7 +153,7 @@ def _points(found: list[Any]) -> Floats64:
         return np.array(_read_each(Point, found))
     except ValueError as error:
         raise AssetError(
-            f"{error}; all landmarks must be vertex numbers, or all must be points [x, y, z] on "
+            f"{error}; all landmarks must be vertex indices, or all must be points [x, y, z] on "
             "the mesh"
         ) from None
 
@@ -181,10 +181,10 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
     if _triangles_at(points, mesh, skin)[1].max() > allowed:
         skin = mesh.faces
-    numbers = nearest_vertices(points, mesh.vertices, skin)
-    joined, _ = with_seams_joined(mesh.vertices, skin, numbers)
+    indices = nearest_vertices(points, mesh.vertices, skin)
+    joined, _ = with_seams_joined(mesh.vertices, skin, indices)
     if joined is skin:
-        return numbers
+        return indices
     return nearest_vertices(points, mesh.vertices, joined)  # paths can now cross the seams
 
 
@@ -202,19 +202,19 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
     the shorter path along the skin.
     """
     used = np.unique(faces)
-    numbers: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
+    indices: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
         np.int32
     )
     to_upper, to_lower = (
-        path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0) for lip in OUTER_LIPS
+        path_lengths(vertices, faces, indices[list(lip)]).min(axis=0) for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
-            numbers[list(lip)] = own[
+            indices[list(lip)] = own[
                 scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])[1]
             ]
-    return numbers
+    return indices
 
 
 @dataclass(frozen=True)

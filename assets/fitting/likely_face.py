@@ -36,7 +36,7 @@ class LikelyFace:
     head: the built-in head, which has the topology of all persons.
     mesh: vertices of the mesh in the person's space [mm], (V, 3).
     faces: triangles of the mesh's skin, (F, 3).
-    numbers: indices of the n known landmarks.
+    indices: indices of the n known landmarks.
     given: points of the known landmarks [mm], (n, 3).
     skin: indices of the person's vertices that are fitted to the mesh, (m,).
     moved: all motion of the mesh so far.
@@ -45,7 +45,7 @@ class LikelyFace:
     head: Head
     mesh: Floats64
     faces: Integers32
-    numbers: list[int]
+    indices: list[int]
     given: Floats64
     skin: Integers32
 
@@ -71,7 +71,7 @@ class LikelyFace:
         """Solve once for the weights and a small motion of the mesh: shift, rotation and scale."""
         vertices = self.vertices
         count = len(self._modes)
-        known = self.head.landmarks[self.numbers]
+        known = self.head.landmarks[self.indices]
         pointing = 0.7  # [mm]; usual error of known landmarks
         displacements = self._modes[:, known].transpose(1, 2, 0).reshape(-1, count)
         rows = [np.hstack([displacements, -_motions(self.given)]) / pointing]

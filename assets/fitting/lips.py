@@ -110,10 +110,10 @@ class LipCut:
         return found
 
 
-def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | None:
+def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | None:
     """Find the cut between joined lips.
 
-    Returns None if the lips are apart, or if no path of edges runs between them. numbers: vertex
+    Returns None if the lips are apart, or if no path of edges runs between them. indices: vertex
     indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     line = lips_line(landmarks)
@@ -136,7 +136,7 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
     used = np.unique(corners[below])
     sources = used[np.isin(same[used], inner)]
-    numbers = numbers.copy()
+    indices = indices.copy()
     points = np.array(landmarks, np.float64)
     new: dict[int, int] = {}
     for place, source in enumerate(sources):
@@ -144,13 +144,13 @@ def lip_cut(mesh: Mesh, numbers: Integers32, landmarks: Floats64) -> LipCut | No
     on_path = scipy.spatial.cKDTree(mesh.vertices[inner])
     for upper, lower, place in zip(UPPER_LIP[1:4], LOWER_LIP[1:4], line[1:4], strict=True):
         vertex = int(inner[on_path.query(place)[1]])
-        numbers[upper] = vertex
-        numbers[lower] = new[vertex]
+        indices[upper] = vertex
+        indices[lower] = new[vertex]
         points[[upper, lower]] = mesh.vertices[vertex]
     for corner, vertex in ((UPPER_LIP[0], path[0]), (UPPER_LIP[-1], path[-1])):
-        numbers[corner] = vertex
+        indices[corner] = vertex
         points[corner] = mesh.vertices[vertex]
-    return LipCut(sources, np.sort(corners[below], axis=1), numbers, points)
+    return LipCut(sources, np.sort(corners[below], axis=1), indices, points)
 
 
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:

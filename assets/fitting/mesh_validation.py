@@ -41,13 +41,13 @@ class ShutMouthError(CoveredError):
 
 @dataclass(frozen=True)
 class SkinPiece:
-    """The piece of a mesh that has the landmarks, with its numbers in the whole mesh."""
+    """The piece of a mesh that has the landmarks, with its indices in the whole mesh."""
 
     vertices: Floats64  # (V, 3)
     faces: Integers32  # (F, 3)
     landmarks: Integers32  # (68,) vertex indices in this piece
     file_vertices: Integers32  # (V,) vertex indices in the whole mesh
-    file_faces: Integers64  # (F,) triangle numbers in the whole mesh
+    file_faces: Integers64  # (F,) triangle indices in the whole mesh
     is_turned: bool = False  # whether the file's triangles faced inward
 
 

@@ -67,8 +67,8 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
             f"{MOST_SIMULATED} in a modelling program"
         )
     nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
-    numbers = nearest_vertices(landmarks, vertices, faces)
-    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
+    indices = nearest_vertices(landmarks, vertices, faces)
+    return SkinPiece(vertices, faces, indices, skin.file_vertices[nearest], np.arange(0))
 
 
 def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
@@ -93,8 +93,8 @@ def _part_with(
     vertices: Floats64, faces: Integers32, count: int, attempt: int
 ) -> tuple[Floats64, Integers32]:
     """Simplify a part of a mesh to `count` triangles; its border stays in place."""
-    used, numbers = np.unique(faces, return_inverse=True)
-    part = numbers.reshape(-1, 3).astype(np.int32)
+    used, indices = np.unique(faces, return_inverse=True)
+    part = indices.reshape(-1, 3).astype(np.int32)
     if len(part) <= count:
         return vertices[used], part
     return collapsed(vertices[used], part, count, attempt)
@@ -121,8 +121,8 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     parted = number.reshape(faces.shape)
     piece = pieces_of(parted, len(first_corner))
     kept = parted[piece[parted[:, 0]] == np.bincount(piece[parted[:, 0]]).argmax()]
-    used, numbers = np.unique(kept, return_inverse=True)
-    return vertices[faces.ravel()[first_corner[used]]], numbers.reshape(-1, 3).astype(np.int32)
+    used, indices = np.unique(kept, return_inverse=True)
+    return vertices[faces.ravel()[first_corner[used]]], indices.reshape(-1, 3).astype(np.int32)
 
 
 def _sewn(

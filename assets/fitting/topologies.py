@@ -57,18 +57,18 @@ class Topology(Record):
         fewest = min((vertices for vertices, _ in self.counts), default=0)
         if len(self.landmarks) != COUNT:
             raise AssetError(
-                f"{where}, 'landmarks': has {len(self.landmarks)} numbers, must have {COUNT}"
+                f"{where}, 'landmarks': has {len(self.landmarks)} vertex indices, must have {COUNT}"
             )
         lists = {
             "landmarks": self.landmarks,
             "edges": [vertex for edge in self.edges for vertex in edge[:2]],
         }
-        for key, numbers in lists.items():
-            highest = max(numbers, default=-1)
+        for key, indices in lists.items():
+            highest = max(indices, default=-1)
             if highest >= fewest:
                 raise AssetError(
                     f"{where}, '{key}': has vertex {highest}; 'counts' must have more "
-                    "vertices than this number, which counts from 0"
+                    "vertices than this index, which counts from 0"
                 )
 
 
@@ -91,10 +91,10 @@ def recognised(mesh: Mesh) -> KnownHead | None:
     If a file of the user's topologies is unusable, raises AssetError.
     """
     known = [*_own_topologies(), *_built_in_topologies()]
-    for numbers, triangles in _candidates(mesh):
+    for indices, triangles in _candidates(mesh):
         for topology in known:
-            if (len(numbers), triangles) in topology.counts and _has_edges(mesh, numbers, topology):
-                found = numbers[topology.landmarks]
+            if (len(indices), triangles) in topology.counts and _has_edges(mesh, indices, topology):
+                found = indices[topology.landmarks]
                 return KnownHead(topology.name, found.astype(np.int32))
     return None
 
@@ -109,13 +109,13 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
     yield same, len(mesh.faces)
 
 
-def _has_edges(mesh: Mesh, numbers: Integers, topology: Topology) -> bool:
+def _has_edges(mesh: Mesh, indices: Integers, topology: Topology) -> bool:
     """Whether the mesh has all edges of a topology, with about the expected lengths."""
     if not topology.edges:
         return True
-    first, second = numbers[[edge[:2] for edge in topology.edges]].T
+    first, second = indices[[edge[:2] for edge in topology.edges]].T
     ratio = np.array([edge[2] for edge in topology.edges])
-    right, left = numbers[topology.landmarks][list(OUTER_EYE_CORNERS)]
+    right, left = indices[topology.landmarks][list(OUTER_EYE_CORNERS)]
     width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
     length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
     most_off = 3.0  # greatest factor between lengths on different faces

@@ -51,7 +51,7 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
 
 
 def with_lids(wrinkles: Wrinkles) -> Wrinkles:
-    """Let the upper lids of a head's wrinkles yield to stretch."""
+    """Add the upper lids to the skin on which stretch smooths wrinkles."""
     across, lids = _yielding()
     return replace(wrinkles, across=across, lids=lids)
 

@@ -31,7 +31,7 @@ class Spread(Enum):
 
 
 class Fan(Enum):
-    """The part of a whole fan that a person's crow's feet fill."""
+    """The part of the fan beside the eye that has crow's feet."""
 
     WHOLE = "whole"
     LOWER = "lower"
@@ -50,7 +50,7 @@ class Lines(NamedTuple):
     - frown: number of upright lines between the brows.
     - uneven: how much shallower than the deepest the other upright lines are, 0 to 1.
     - feet: number of crow's feet on each side.
-    - fan: part of the fan that crow's feet fill.
+    - fan: part of the fan beside the eye that has crow's feet.
     - reach: length of the longest crow's foot [mm].
     - fine: number of fine lines on the forehead for each line in `forehead`.
     """

@@ -50,7 +50,7 @@ class Measuring(Criterion):
 
 
 class Maximum(Criterion):
-    """Combination of several criteria: an edge gets the most splits that any of them wants."""
+    """A combination of several criteria: an edge is split as often as any of them asks."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:
@@ -96,8 +96,9 @@ class Maximum(Criterion):
 class Silhouette(Measuring):
     """The criterion `silhouette`: it splits edges along which the surface turns away from the eye.
 
-    The turn of an edge counts only up to the turn that splits it twice on the outline itself.
-    Otherwise points on coarse meshes would move out abruptly after a small motion of the eye.
+    The angle between the normals of an edge is limited to the angle that splits an edge on the
+    outline twice. Otherwise points on coarse meshes would jump outward after a small motion of the
+    eye.
     """
 
     def __init__(self, once: Once = 0.005, twice: Twice = 0.03, levels: Levels = 2) -> None:

@@ -54,8 +54,8 @@ class Embedding:
     rounding. A rigid motion of the coarse mesh moves them rigidly.
 
     triangles: coarse triangle that each fine vertex is bound to, shape (N,), read only.
-    weights: its barycentric coordinates there, shape (N, 3), read only.
-    offsets: from the smooth surface to it at rest, shape (N, 3), read only.
+    weights: barycentric coordinates of its point on that triangle, shape (N, 3), read only.
+    offsets: vectors from the smooth surface to the fine vertices at rest, shape (N, 3), read only.
     """
 
     def __init__(

@@ -56,7 +56,7 @@ class GivenSplits(Criterion):
             )
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:
-        """Write a metric at which points are at their final positions, shape (E,)."""
+        """Write the metric of every edge, shape (E,), so high that blending is complete."""
         np.copyto(metric, self._splits)
         metric[self._splits == 0] = -np.inf
 

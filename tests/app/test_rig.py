@@ -440,7 +440,7 @@ def test_a_ball_is_found_where_it_is():
 
 @pytest.mark.parametrize("change", ["moved", "fewer"])
 def test_a_file_that_changed_since_it_was_read_is_refused(tmp_path, change):
-    """A file changed after it was read is refused, because vertex numbers may differ.
+    """A file changed after it was read is refused, because vertex indices may differ.
 
     The window makes avatars long after reading.
     """

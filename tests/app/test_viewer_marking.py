@@ -128,7 +128,7 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     assert third.is_upright
 
 
-def test_vertex_numbers_can_be_corrected(marking, tmp_path):
+def test_vertex_indices_can_be_corrected(marking, tmp_path):
     """A landmark file of another program is read, and saved as points."""
     _, numbers = user_head().write(tmp_path)
     marking.open(numbers)

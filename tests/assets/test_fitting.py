@@ -43,7 +43,7 @@ def simulation(fitted: FittedHead) -> sim.Simulation:
 
 @pytest.mark.slow
 def test_files_are_read_and_fitted(other, fitted, tmp_path):
-    """Vertex numbers and points as landmarks give the same head; a plain list is accepted."""
+    """Vertex indices and points as landmarks give the same head; a plain list is accepted."""
     mesh, numbers = other.write(tmp_path)
     by_number = fit_head(mesh, numbers)
     assert np.abs(by_number.vertices - fitted.vertices).max() < 1e-3
@@ -319,7 +319,7 @@ def test_meshes_that_are_no_surface_are_named(other, change, message):
 
 
 def test_pieces_that_are_left_away_may_be_anything(other):
-    """Pieces that are left out may be no valid surface; the skin keeps its vertex numbers."""
+    """Pieces that are left out may be no valid surface; the skin keeps its vertex indices."""
     mesh = with_card(other.mesh)
     head = fit(mesh, other.landmarks)
     assert np.array_equal(head.file_vertices, np.arange(len(other.mesh.vertices)))
@@ -394,7 +394,7 @@ def test_warp_meets_its_points_and_keeps_similarities(generator):
 def test_a_pouch_behind_the_lips_is_removed():
     """A pouch behind the lips of the file is removed for the built-in mouth.
 
-    The outer skin keeps its landmarks and vertex numbers.
+    The outer skin keeps its landmarks and vertex indices.
     """
     other = user_head()
     bagged = closed(other.mesh, other.landmarks[60:68])

@@ -73,9 +73,9 @@ def test_a_group_in_disorder_is_refused_in_one_line(group, other):
 
 
 def test_numbers_counted_from_1_are_refused(other, tmp_path):
-    """Vertex numbers that are one too high, as if counted from 1, are refused."""
+    """Vertex indices that are one too high, as if counted from 1, are refused."""
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
-    with pytest.raises(AssetError, match=r"\.obj: landmarks number vertices from 1"):
+    with pytest.raises(AssetError, match=r"\.obj: vertex indices of the landmarks count from 1"):
         fit_head(mesh, numbers)
 
 

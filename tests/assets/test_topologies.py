@@ -115,7 +115,7 @@ def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"landmarks": [1, 2]}, "mine.json, 'landmarks': has 2 numbers, must have 68"),
+        ({"landmarks": [1, 2]}, "mine.json, 'landmarks': has 2 vertex indices, must have 68"),
         ({"counts": [[40, 9]]}, "'landmarks': has vertex 67; 'counts' must have more vertices"),
         ({"counts": 7}, "mine.json, 'counts'"),
         ({"edges": [[1, 900, 0.1]]}, "'edges': has vertex 900; 'counts' must have more vertices"),

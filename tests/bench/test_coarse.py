@@ -15,7 +15,7 @@ def comparison():
 
 
 def numbers(*of_file):
-    """Vertex numbers of the coarse head for vertex numbers of the built-in head."""
+    """Vertex indices of the coarse head for vertex indices of the built-in head."""
     return np.searchsorted(coarse_head().file_vertices, of_file).tolist()
 
 

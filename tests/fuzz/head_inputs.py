@@ -23,7 +23,7 @@ NUMBERS = HEAD.landmarks.tolist()
 POINTS = HEAD.vertices[HEAD.landmarks].tolist()
 BACK = int(np.argmin(HEAD.vertices[:, 2]))
 BROKEN = "broken, or not what its name says|holds no triangles"
-WRONG_KIND = "all landmarks must be vertex numbers, or all must be points"
+WRONG_KIND = "all landmarks must be vertex indices, or all must be points"
 
 
 class Kind(Enum):

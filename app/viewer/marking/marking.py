@@ -165,7 +165,10 @@ class Marking:
             self.current = ORDER[0]
 
     def seen(self, numbers: Iterable[int]) -> tuple[Floats64, Floats64]:
-        """Return marks in the picture's space, (n, 3), and normals of the skin there, (n, k, 3)."""
+        """Return the marked points in the picture's space, (n, 3), and normals of the skin.
+
+        The normals, (n, k, 3), are those of the k vertices nearest to each point.
+        """
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))

@@ -105,11 +105,11 @@ class KeySelection:
         return bool(self.places) and self.can_edit
 
     def set_key(self) -> Message:
-        """Key the controls that were moved since the last key, at the current time."""
+        """Set keys at the current time for the controls that were moved since the last key."""
         return self.key_controls(self._session.touched)
 
     def key_controls(self, names: Collection[str]) -> Message:
-        """Key these controls alone, at the current time."""
+        """Set keys for these controls, and no others, at the current time."""
         if not names:
             raise UserError(
                 "no control was moved since the last key; [Key whole pose] sets keys for all"

@@ -149,7 +149,7 @@ class FaceMode:
         self.layout.draw(self.view)
 
     def rest(self) -> None:
-        """Stop the sound, because the window waits for an event."""
+        """Stop the sound while the window sleeps."""
         self.soundtrack.rest()
 
     def drop(self, paths: Sequence[str]) -> Message:
