@@ -15,7 +15,7 @@ from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
 SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
-"""Options that refine places that bend, or are coarse at rest: the defaults of the application."""
+"""Options that refine regions that bend or are coarse at rest: the defaults of the application."""
 
 
 class WeldedRefiner:
@@ -151,12 +151,12 @@ def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
         return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
     corners = table[rows]
-    shares = weights.reshape(weights.shape + (1,) * (table.ndim - 1))
-    has_part = np.broadcast_to(shares > 0.0, corners.shape)
+    fractions = weights.reshape(weights.shape + (1,) * (table.ndim - 1))
+    has_part = np.broadcast_to(fractions > 0.0, corners.shape)
     if table.dtype.kind in "iu" and table.dtype.itemsize == 8:
-        return _mixed_wide(corners, shares, has_part)
+        return _mixed_wide(corners, fractions, has_part)
     parts = np.zeros(corners.shape, dtype=np.result_type(table.dtype, np.float64))
-    np.multiply(corners, shares, where=has_part, out=parts)  # infinity times zero would be NaN
+    np.multiply(corners, fractions, where=has_part, out=parts)  # infinity times zero would be NaN
     mixed = parts.sum(axis=1)
     if table.dtype.kind == "f":  # values equal at all corners stay so to the last bit
         first = np.where(has_part, corners, np.inf).min(axis=1)
@@ -167,19 +167,19 @@ def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.
 
 
 def _mixed_wide(
-    corners: npt.NDArray[np.integer], shares: Floats64, has_part: Flags
+    corners: npt.NDArray[np.integer], fractions: Floats64, has_part: Flags
 ) -> npt.NDArray[np.integer]:
-    """Do the same for integers of 64 bits, shape (M, 3, ...), which doubles cannot represent.
+    """Return weighted means of integers of 64 bits, shape (M, 3, ...).
 
-    Doubles can represent their differences from the least of the three. Halves are rounded to the
-    even number, as `numpy.rint` does.
+    Doubles cannot represent these integers, but they can represent their differences from the least
+    of the three. Halves are rounded to the even number, as `numpy.rint` does.
     """
     largest = np.iinfo(corners.dtype).max
     least = np.where(has_part, corners, largest).min(axis=1).astype(np.uint64)
     differences = corners.astype(np.uint64) - least[:, None]
     above = np.where(has_part, differences, np.uint64(0))
     most = above.max(axis=1)
-    mean = (above.astype(np.float64) * shares).sum(axis=1)
+    mean = (above.astype(np.float64) * fractions).sum(axis=1)
     is_below = mean < most.astype(np.float64)
     whole = np.where(is_below, np.floor(mean), 0.0)
     rest = np.where(is_below, mean - whole, 0.0)

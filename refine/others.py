@@ -44,7 +44,7 @@ from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-"""Four children of a triangle with corners 0 1 2 and middles 3 4 5 of its edges."""
+"""Four children of a triangle with corners 0 1 2 and midpoints 3 4 5 of its edges."""
 LEVELS = Option("how often all edges are split", 1, 4, name="levels", kind="integer")
 """Most levels, chosen: four levels make 256 triangles of each, half a million of a face."""
 
@@ -131,11 +131,11 @@ class Loop(BaseRefiner):
         return vertex_count, triangle_count
 
     def follow_values(self) -> None:
-        """Take values of every level, from middles of the edges of the level before."""
+        """Compute the values of every level: those of the last level, then those on its edges."""
         assert self._values is not None
         values = self._values.values
         for mesh in self._split:
-            values = _with_middles(values, mesh)
+            values = _with_edge_points(values, mesh)
         finest = self._finest.connectivity
         spread_over_wedges(values, finest.wedge_uv, self._wedge_values)
 
@@ -182,17 +182,17 @@ class _Refined:
         parents = np.concatenate([np.repeat(split, 4), whole])
         order = np.argsort(parents, kind="stable")
 
-        vertex_middles = mesh.vertex_count + mesh.triangle_edges[split].astype(np.int64)
-        children = _children(mesh.faces[split].astype(np.int64), vertex_middles)
+        vertex_edge_points = mesh.vertex_count + mesh.triangle_edges[split].astype(np.int64)
+        children = _children(mesh.faces[split].astype(np.int64), vertex_edge_points)
         faces = np.concatenate([children, mesh.faces[whole]])[order]
 
         corner_rows = None
         values = self.values
         if values is not None:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
-            middles = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
-            corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
-            values = _with_middles(values, mesh)
+            edge_points = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
+            corner_rows = np.concatenate([_children(rows[split], edge_points), rows[whole]])[order]
+            values = _with_edge_points(values, mesh)
 
         corners = self.barycentric[split]
         children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
@@ -213,18 +213,18 @@ class _Refined:
         )
 
 
-def _with_middles(values: Floats32, mesh: Connectivity) -> Floats32:
+def _with_edge_points(values: Floats32, mesh: Connectivity) -> Floats32:
     """Values of a mesh, (A, k), followed by those in the middle of each attribute edge."""
-    middles = values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)
-    return np.concatenate([values, middles])
+    edge_points = values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)
+    return np.concatenate([values, edge_points])
 
 
-def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return four triangles for each triangle: three at its corners, and one between its middles.
+def _children(corners: npt.NDArray[Any], edge_points: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return four triangles for each triangle: three at its corners, and one between its midpoints.
 
-    `corners`: of any kind, shape (F, 3, ..); `middles`: of the edges. Shape (4 F, 3, ..).
+    `corners`: of any kind, shape (F, 3, ..); `edge_points`: of the edges. Shape (4 F, 3, ..).
     """
-    points = np.concatenate([corners, middles], axis=1)
+    points = np.concatenate([corners, edge_points], axis=1)
     return points[:, CHILD_TRIANGLES].reshape(-1, *corners.shape[1:])
 
 

@@ -24,6 +24,6 @@ def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze;
-    foundation.py lists them. Raises ValueError with the fault of the head or its rig.
+    foundation.py lists them. Raises ValueError, which names the fault of the head or of its rig.
     """
     return Simulation(build_face_model(head))

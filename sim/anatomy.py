@@ -15,7 +15,7 @@ from .state import State
 
 
 class Anatomy:
-    """Contracted muscles, the tongue, and how deep skin penetrates the parts under it."""
+    """Contracted muscles, the tongue, and the depth by which skin penetrates other parts."""
 
     def __init__(
         self, model: FaceModel, state: State, controls: Controls, bones: Bones, drive: MuscleDrive
@@ -46,14 +46,14 @@ class Anatomy:
         return model.space.to_head(model.tongue.bent(out, up, self._state.x, self._bones.mandible))
 
     def fibres(self) -> dict[str, list[Floats64]]:
-        """Fibres as they contract without resistance: name -> polylines (n, 3) [head units]."""
+        """Fibres, contracted as if nothing resisted: name -> polylines (n, 3) [head units]."""
         pull = self._drive.pull(self._drive.activation())
         return self._in_head(self._model.muscles.lines(pull, self._bones.mandible, self._state))
 
     def courses(self) -> dict[str, list[Floats64]]:
         """Where muscles run now, to draw: control name -> polylines (n, 3) [head units].
 
-        Insertions stay in the skin, which follows a contraction in part.
+        Insertions stay in the skin, which follows only a part of a contraction.
         """
         model = self._model
         muscles = model.muscles
@@ -87,7 +87,7 @@ class Anatomy:
         return name if nearest.get(name, np.inf) <= reach else None
 
     def penetrations(self) -> dict[str, float]:
-        """Greatest depth of skin in the other lip, eyeballs and teeth, minus that at rest [mm].
+        """Greatest depth of skin in other lip, eyeballs and teeth, minus the depth at rest [mm].
 
         Names: "lips" (depth in the other lip, beyond the overlap of sealed lips), "lids" (depth in
         an eyeball), "teeth".

@@ -14,8 +14,10 @@ from .skull import HEAD_CONTROLS, REST
 class Bones:
     """Cranium, mandible and eyeballs; only bones that moved are computed again.
 
-    mandible_weight, head_weight: how far each vertex follows the mandible (given or guessed) and
-        the head's pose (fades to 0 down the neck), 0 to 1, shape (V,).
+    mandible_weight: how far each vertex follows the mandible, 0 to 1, shape (V,); the head has it,
+        or it is guessed.
+    head_weight: how far each vertex follows the head's pose, 0 to 1, shape (V,); 0 at the base of
+        the neck.
     jaw: current values of the jaw: open, forward, sideways. lips_closed: how far lips are now kept
     together over an open jaw, 0 to 1. weight: the mandible's weights for this value of lips_closed,
     shape (V,).

@@ -1,4 +1,4 @@
-"""Checks of arguments from callers: numbers, arrays and names. A wrong one raises ValueError.
+"""Checks of callers' arguments: numbers, arrays and names; a wrong argument raises ValueError.
 
 Every message names the argument, its value, and the allowed values. numpy alone would accept
 strings as numbers, truncate 0.7 to vertex 0, and raise other errors.
@@ -32,9 +32,9 @@ def number(what: str, value: Any) -> float:
 
 
 def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
-    """Copy finite numbers in C order; raises ValueError for another shape than `shape`.
+    """Copy finite numbers in C order; raises ValueError if their shape is not `shape`.
 
-    wanted: names the shape in the error.
+    wanted: words for the shape in the error.
     """
     wanted = wanted or str(shape)
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
@@ -50,7 +50,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
 def vertex_indices(
     what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
 ) -> Integers64:
-    """Copy vertex indices, in rows; wanted: the allowed values, in words."""
+    """Copy vertex indices in C order; wanted: words for the allowed values."""
     array = _array(what, given, "fiub", wanted)
     is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no type
     if not is_whole or not _fits(array, shape):
@@ -64,7 +64,7 @@ def vertex_indices(
 
 
 def several(what: str, given: Any, attributes: tuple[str, ...]) -> list[Any]:
-    """Objects that have these attributes, in a list."""
+    """Return a list of objects that have these attributes; else raises ValueError."""
     names = ", ".join(attributes)
     try:
         found = list(given)

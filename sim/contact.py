@@ -32,7 +32,7 @@ EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
 
 
 class LipPairs(NamedTuple):
-    """Vertices of one lip and the points of the other that lie on them when the mouth is closed."""
+    """Vertices of each lip, and the point of the other lip that each touches in a closed mouth."""
 
     vertex: Integers32  # (P,)
     beside: Integers32  # (P, 2) ends of an edge-like segment of the other lip
@@ -44,14 +44,14 @@ class LipPairs(NamedTuple):
     members: Integers32  # (M,) all vertices in pairs
 
     def apart(self, values: Floats64) -> Floats64:
-        """Values (V, 3) at vertices of all pairs, minus values at their points, shape (P, 3)."""
+        """Values (V, 3) at the vertices of all P pairs, minus values at their points, (P, 3)."""
         a, b = self.beside.T
         share = self.share[:, None]
         apart: Floats64 = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]
         return apart
 
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
-        """Greatest depth of crossing lips at positions (V, 3), minus `pressed` and rest depth [mm].
+        """Greatest depth of crossing lips [mm] at positions (V, 3), beyond `pressed` and `rest`.
 
         A lower lip in front of the upper lip, or rolled in behind it (substep.py), does not count.
         """
@@ -85,7 +85,7 @@ SEALED = Grip.of(1.0, 0.0)
 def pair_lips(
     surface: SkinSurface, landmarks: Floats64, lip_side: Floats64, seal: float
 ) -> LipPairs:
-    """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
+    """Pair the edges of the lips; a mouth that is open at rest, or not cut, has no pairs."""
     x = surface.positions
     line = mouth_line(landmarks)
     lip_edge = 5.0  # mm around the mouth line in which lip vertices are looked for
@@ -170,7 +170,7 @@ class EyeContact(NamedTuple):
 
 
 def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
-    """Find the vertices that could touch an eyeball; those inside may not sink deeper."""
+    """Find the vertices that could touch an eyeball; vertices inside it may not sink deeper."""
     vertices = []
     centres = []
     least = []

@@ -61,11 +61,11 @@ class Controls:
     layers: Mapping[str, tuple[str, ...]]
     """Names of the controls of the layers above, by the title of the layer, from the bottom up."""
     limits: Mapping[str, tuple[float, float]]
-    """Least and greatest value of each control, those of the layers included."""
+    """Least and greatest value of each control, also of the layers' controls."""
     groups: Mapping[str, tuple[str, ...]]
-    """Control names by the title under which a panel lists them, layers last."""
+    """Title of a group in a panel -> names of its controls; layers come last."""
     actions: Mapping[str, str]
-    """The effect of each control, in words; "" where its file has none."""
+    """The effect of each control, in words; "" if its file has none."""
     tables: Layers
     """The shares that each control of the layers adds to the C lowest ones, in their order."""
     reached: Floats64
@@ -132,11 +132,11 @@ class Controls:
 
     @property
     def sums(self) -> dict[str, float]:
-        """For each muscle, jaw, gaze: its own value, and the values that layers above add to it."""
+        """The value of each lowest control, with the values that the layers above add to it."""
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
-        """Indices of lowest controls in `reached`; the last index if the face lacks a control."""
+        """Indices of controls in `reached`; the last index for controls without an entry."""
         none = len(self.lowest)
         return np.array([min(self._places.get(name, none), none) for name in names], np.intp)
 
@@ -146,11 +146,11 @@ class Controls:
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several controls, or none if `set` would refuse one of them."""
+        """Set several controls; if `set` would refuse one of them, none is set."""
         self._set_over(self._values, values)
 
     def pose(self, values: Mapping[str, float]) -> None:
-        """Set several controls, and all others to zero; or none if `set` would refuse one."""
+        """Set several controls, and all others to zero; if `set` would refuse one, none is set."""
         self._set_over(np.zeros_like(self._values), values)
 
     def _set_over(self, others: Floats64, values: Mapping[str, float]) -> None:
@@ -162,7 +162,7 @@ class Controls:
         self._take(wanted)
 
     def take(self, values: npt.ArrayLike) -> None:
-        """Set all controls to values in the order of `names`, shape (N,); none if one is wrong."""
+        """Set all controls to values in the order of `names`; if one is wrong, none is set."""
         self._take(numbers("values", values, self._values.shape))
 
     def _take(self, wanted: Floats64) -> None:
@@ -248,7 +248,7 @@ class MuscleDrive:
         return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 
     def pull(self, activation: Floats64) -> Floats64:
-        """The pull of the fibres, for about linear motion of the skin, shape (M,)."""
+        """The pull of each muscle's fibres, shape (M,), which moves skin about linearly."""
         return activation**self._power
 
 

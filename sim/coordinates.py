@@ -56,7 +56,7 @@ class FaceSpace:
 
     @classmethod
     def from_bounds(cls, vertices: Floats64) -> FaceSpace:
-        """The space for a mesh without landmarks: it keeps axes, and scales the box to a head's."""
+        """The space for a mesh without landmarks: the mesh's axes, scaled to the size of a head."""
         low = vertices.min(axis=0)
         high = vertices.max(axis=0)
         diagonal = float(np.linalg.norm(high - low))

@@ -50,13 +50,13 @@ class Simulation:
     """A simulated face that follows its controls; made by `sim.create`.
 
     controls: muscles, jaw, gaze, and the layers above.
-    bones: the places of jaw and eyeballs.
+    bones: the poses of jaw and eyeballs.
     anatomy: the current parts under the skin.
-    touch: blows and pulls on the skin.
-    positions, rest_positions: vertices now and at rest [head units], shape (V, 3), read only;
-        `step` rewrites the first.
+    touch: impulses on the skin, and springs that pull it.
+    positions: current vertices [head units], shape (V, 3), read only; `step` rewrites them.
+    rest_positions: vertices at rest [head units], shape (V, 3), read only.
     faces: triangles, shape (F, 3), read only.
-    areas: skin of each vertex at rest [mm2 of the standard face], shape (V,), read only.
+    areas: area of each vertex's skin at rest [mm2 of the standard face], shape (V,), read only.
     grip: how firmly the lip seal holds now.
     """
 
@@ -81,7 +81,7 @@ class Simulation:
         self.place_targets()
 
     def reset(self) -> None:
-        """Relax everything and put the face back to rest at once."""
+        """Set all controls to 0, and move the face to rest at once."""
         self.controls.reset()
         self._state.x[:] = self._model.surface.positions
         self._state.v[:] = 0.0
@@ -96,7 +96,7 @@ class Simulation:
         return clone
 
     def copy_from(self, other: Simulation) -> None:
-        """Take over controls, positions and velocities of a clone; raises ValueError for others."""
+        """Copy controls, positions and velocities of a clone; else raises ValueError."""
         if not isinstance(other, Simulation) or other._model is not self._model:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self.controls.copy_from(other.controls)
@@ -105,7 +105,7 @@ class Simulation:
         self._positions[:] = other._positions
 
     def jump(self, values: Mapping[str, float]) -> None:
-        """Set several controls, and move all muscles and bones at once; the skin follows."""
+        """Set several controls; muscles and bones move at once, the skin follows over time."""
         self.controls.set_all(values)
         self.controls.arrive()
         self._state.v[:] = 0.0

@@ -73,7 +73,7 @@ class FaceModel(Foundation):
 
 
 def build_face_model(head: Any) -> FaceModel:
-    """Build a face from a mesh; raises ValueError, which names the head's wrong attribute."""
+    """Build a face from a head; raises ValueError, which names the wrong attribute."""
     foundation = foundation_of(head)
     if foundation.landmark_indices is None:
         return build_plain(foundation)

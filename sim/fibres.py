@@ -4,7 +4,7 @@ A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Skin is attached
 length t in 0..1. At contraction c, the point at t moves to where the point at t (1 - c) was: skin
 slides along the fibre towards the origin. A muscle whose origin is no bone (frontalis: the scalp)
 is fixed at t = f instead, and both ends slide towards it: t moves to f + (t - f)(1 - c). A table
-holds the displacements at SAMPLES places along every fibre; each tick rewrites it. The skin, and
+holds the displacements at SAMPLES points along every fibre; each tick rewrites it. The skin, and
 muscles that lie on the fibre, read the table by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
@@ -54,7 +54,11 @@ class Gate(NamedTuple):
 
 @njit
 def gate_at(gate: Gate, lateral: float, lip_side: float) -> float:
-    """Return 1 where a muscle may act, 0 where it must not move the skin; lateral: place [mm]."""
+    """Return 1 where a muscle may act, 0 where it must not move the skin.
+
+    lateral: distance to the subject's left from the midline [mm]. lip_side: see `lip_side` of
+    lip_lid_sides.py.
+    """
     found = 1.0
     if gate.side != 0.0:  # fades to 0 across the midline; twins add up to 1
         midline_fade = 20.0  # mm across the midline over which a paired muscle yields to its twin
@@ -83,7 +87,7 @@ class FibreBundle(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """The points of lines that lie on other lines; line b has rows[b]:rows[b + 1]."""
+    """The points of lines that lie on other lines; those of line b are rows[b]:rows[b + 1]."""
 
     rows: Unsigned32  # (B + 1,)
     point: Unsigned32  # (n,) number within the carried line
@@ -121,7 +125,7 @@ def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
 
 
 def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
-    """Return lines (n, FIBRE_POINTS, 3), moved toward the skin near them by fractions (n,)."""
+    """Move lines (n, FIBRE_POINTS, 3) toward the skin near them, each by its fraction (n,)."""
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
@@ -137,7 +141,7 @@ def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Flo
 
 
 def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tuple[Floats64, ...]:
-    """Fields of the skin, shape (V, ...), at points (n, 3): means of the nearest vertices."""
+    """Interpolate fields of the skin, (V, ...), at points (n, 3): means of the nearest vertices."""
     count = min(WRAP_NEIGHBOURS, surface.vertex_count)
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
     # The furthest neighbour has weight 0, so that a tie between two of them cannot bend a midline
@@ -214,7 +218,7 @@ def hang_on_fibre(
 
 @njit
 def arcs_along(points: Floats64, positions: Floats64) -> Floats64:
-    """Return where a line (k, 3) is nearest to each of the positions (n, 3), as places 0..1."""
+    """Return where a line (k, 3) is nearest to each of the positions (n, 3): arc lengths 0..1."""
     reached = _reached(points)
     arc = np.empty(len(positions))
     foot = np.empty(3)

@@ -157,7 +157,7 @@ def _read_layers(tables: Any, controls: tuple[Control, ...]) -> Layers:
 
 
 def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
-    """Checked copies of the vertices and faces of a head; `what`: its name in errors."""
+    """Check and copy the vertices and faces of a head; `what`: its name in errors."""
     for name in ("vertices", "faces"):
         if not hasattr(given, name):
             raise ValueError(

@@ -113,12 +113,12 @@ def _fill_squared(points: Floats64, corners: Floats64, squared: Floats64) -> Non
 
 
 def mouth_line(landmarks: Floats64) -> Floats64:
-    """Where the inner lips meet, from corner to corner, of landmarks (68, 3), shape (5, 3)."""
+    """The line between the inner lips, from corner to corner, (5, 3); landmarks: (68, 3)."""
     line: Floats64 = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
     return line
 
 
 def smoothstep(x: npt.ArrayLike) -> Floats64:
-    """0 below 0, 1 above 1, 3x^2 - 2x^3 between."""
+    """Return 0 for x below 0, 1 for x above 1, and 3x^2 - 2x^3 between."""
     t = np.clip(np.asarray(x, dtype=np.float64), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)

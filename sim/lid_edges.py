@@ -40,7 +40,7 @@ class LidAxes(NamedTuple):
 def front_edges(
     surface: SkinSurface, axes: LidAxes, outline: Floats64
 ) -> tuple[Integers32, Integers32]:
-    """Vertices of the front edges of the upper and the lower lid, from corner to corner.
+    """Find the vertices of the front edges of the upper and the lower lid, from corner to corner.
 
     outline: an eye's landmarks from the outer corner, (6, 3).
     """
@@ -62,7 +62,7 @@ def _front_edge(surface: SkinSurface, line: Floats64, axes: LidAxes) -> Integers
 
 
 def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Floats64:
-    """Side of each vertex (V,), 1 or -1 on the front edges of the upper and the lower lid.
+    """Correct the side of each vertex, (V,): 1 on the upper lid's front edge, -1 on the lower's.
 
     Beside a corner of the eye, a coarse mesh may have a vertex of the upper edge that lies nearer
     to the lower landmarks.
@@ -74,7 +74,7 @@ def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Flo
 
 
 class OneLid(NamedTuple):
-    """One lid of an eye: by vertex, shape (V,), or by column of the opening, shape (COLUMNS,)."""
+    """Values of one lid for each vertex, shape (V,), or each column of the opening, (COLUMNS,)."""
 
     weight: Floats64  # (V,) share of the margin's turn
     fold: Floats64  # (V,) share of the turn of the open lid

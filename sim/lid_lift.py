@@ -4,8 +4,8 @@ Lids turn over the eyeball vertex by vertex and are kept off the ball there (con
 triangle between three vertices is flat, and the cornea protrudes from the ball, so triangles of a
 coarse mesh would intersect the ball. So the lids are closed once when a face is built. If a
 triangle then intersects the eyeball, its corners on the upper lid move outward, each by its
-barycentric weight at the deepest point. The lower lid hardly moves when it closes, and keeps its
-form.
+barycentric weight at the deepest point. The lower lid hardly moves when the eye closes, and keeps
+its form.
 
 Source: own; projection by weights as in Müller et al. 2007, "Position based dynamics", section 3.
 """
@@ -31,7 +31,7 @@ def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) 
     would form a pouch in front of the ball that hangs over the lashes.
 
     x: vertices at rest (V, 3). column: fractions of the way from the outer corner of the eye (0) to
-    the inner corner (1), shape (V,). share: how far each vertex follows the turn of the margin,
+    the inner corner (1), shape (V,). share: how far each vertex turns with the margin, 0 to 1,
     shape (V,).
     """
     thickness = 2.2  # [mm] of skin, muscle and plate, from the eyeball to the front of a lid

@@ -46,14 +46,14 @@ Smooth = Callable[[Floats64], Floats64]
 
 
 class Lids(NamedTuple):
-    """The eyelids of a face."""
+    """The lids of a face: their vertices, their stiffness, and the muscles that turn them."""
 
     vertices: LidVertices
     hold: Floats64  # (L,) extra stiffness of the tarsal plate
     muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
 
     def drive(self, activation: Floats64) -> Floats64:
-        """Closing of each eye's upper lid, raising of its lower and its upper lid, (eyes, 3)."""
+        """Closing and raising of lids, (eyes, 3): upper closes, lower rises, upper rises."""
         drive = np.zeros((len(self.vertices.centres), 3))
         for control, eye, action, travel in self.muscles:
             drive[eye, action] += travel * max(activation[control], 0.0)
@@ -156,9 +156,10 @@ def _lid_vertices(
 
 
 def opened_share_of(apertures: Floats64) -> Floats64:
-    """Return how far lids follow the gaze, by their greatest opening [rad] at rest, shape (eyes,).
+    """Return how far the lids of each eye follow the gaze, 0 to 1, shape (eyes,).
 
-    Lids that are shut at rest stay shut: a look upward would open them. From 0 to 1.
+    apertures: greatest opening of each eye at rest [rad], shape (eyes,). Lids that are shut at rest
+    do not follow, because a look upward would open them.
     """
     shut, narrow = 0.08, 0.16  # rad; 0.08 is a millimetre on a human ball
     share: Floats64 = smoothstep((apertures - shut) / (narrow - shut))

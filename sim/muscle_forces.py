@@ -46,7 +46,7 @@ from .surface import SkinSurface
 
 
 class Attachments(NamedTuple):
-    """Vertices attached to muscles or lines; owner m has rows[m]:rows[m + 1]."""
+    """Vertices attached to muscles or lines; those of muscle or line m are rows[m]:rows[m + 1]."""
 
     rows: Unsigned32  # (owners + 1,)
     vertex: Unsigned32  # (n,)
@@ -83,10 +83,10 @@ class MuscleForces:
     skin: SkinAttachments
     rings: tuple[tuple[int, Ring], ...]  # muscle, and its ring
 
-    def hold_of(self, share: Floats64, vertex_count: int) -> Floats64:
-        """Return the stiffness per vertex, shape (V,), of muscles scaled by `share` (M,)."""
+    def hold_of(self, factors: Floats64, vertex_count: int) -> Floats64:
+        """Return the stiffness per vertex, (V,), of muscles multiplied by `factors`, (M,)."""
         holds = self.skin.holds
-        weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
+        weight = holds.weight * np.repeat(factors, holds.rows[1:] - holds.rows[:-1])
         hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
         return hold.astype(np.float64)
 
@@ -104,7 +104,7 @@ class MuscleForces:
     def lines(
         self, activation: Floats64, mandible: RigidMotion, state: State
     ) -> dict[str, list[Floats64]]:
-        """Polylines [mm] to draw: contracted fibres of linear muscles, skin along sphincters."""
+        """Polylines to draw [mm]: contracted fibres of linear muscles, skin along sphincters."""
         lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         rings = dict(self.rings)
@@ -132,7 +132,7 @@ class MuscleForces:
         """Polylines [mm] of linear muscles where they run now: from bone to the skin they move.
 
         moved_skin: displacement of the skin [mm], shape (V, 3). held: see `holds_of_lines`.
-        Contraction alone would end before the skin, which resists.
+        Lines contracted without resistance would end before the skin.
         """
         lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         rings = dict(self.rings)
@@ -150,7 +150,10 @@ class MuscleForces:
         return lines
 
     def holds_of_lines(self, rest: Floats64) -> list[LineHold]:
-        """Return the skin at each line's points, near them more than far; `rest`: (V, 3) [mm]."""
+        """Return the skin around each line's points, with weights that fall with the distance.
+
+        rest: skin at rest, (V, 3) [mm].
+        """
         pulls = self.skin.pulls
         reach = 3.0  # [mm] beyond the nearest vertex
         held = list[LineHold]()

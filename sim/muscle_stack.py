@@ -96,9 +96,9 @@ def _carried(
     places: AttachedPoints,
     at: Integers64,
 ) -> _Carried:
-    """Attach points with the numbers `at` to a muscle, each to the line that holds it most.
+    """Attach the points with indices `at` to a muscle, each to its line of greatest weight.
 
-    first: number of the muscle's first line.
+    first: index of the muscle's first line.
     """
     holds = [attach(beneath, line, landmarks, places) for line in beneath.lines]
     along = [points_along(line, hold.arc) for line, hold in zip(beneath.lines, holds, strict=True)]
@@ -115,7 +115,7 @@ def _carried(
 
 
 def points_along(line: Line, arc: Floats64) -> Floats64:
-    """Places 0..1 along a line as places among its points, 0..FIBRE_POINTS - 1, shape (n,)."""
+    """Convert arc lengths 0..1 along a line to fractional indices of its points, shape (n,)."""
     reached = arc_lengths(line.points)
     places: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
     return places

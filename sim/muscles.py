@@ -175,7 +175,7 @@ def attach_to_fibre(
 def attach_to_ring(
     muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Attachment:
-    """Attach points to a sphincter: an elliptic ring around landmarks, which contracts to a centre."""
+    """Attach points to a sphincter, an elliptic ring that contracts to a centre."""
     _, up, down = muscle.radii
     rho, weight = _within_ring(muscle, landmarks, side, places)
     on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip
@@ -194,7 +194,7 @@ def attach_to_ring(
 def _within_ring(
     muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> tuple[Floats64, Floats64]:
-    """Relative radii of places, 1 on the ellipse, and how firmly a sphincter holds them, (n,)."""
+    """Relative radii of points, 1 on the ellipse, and weights of their attachment, (n,)."""
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
     rear = float(landmarks[[36, 45], 2].mean()) - face_depth
     ellipse = (*_middle(muscle, landmarks, side).tolist(), *muscle.radii)
@@ -219,7 +219,7 @@ def _hold_in_ring(
 ) -> None:
     """Fill the results of `_within_ring` where a sphincter holds.
 
-    ellipse: its middle, and its radii to the side, up and down [mm]. edge: falloff outside and
+    ellipse: its centre, and its radii to the side, up and down [mm]. edge: falloff outside and
     inside. arc: side, and `arc_deg` of the muscle. rear: z behind which the ring does not reach.
     """
     x, y, _, lateral, up, down = ellipse
@@ -247,7 +247,7 @@ def _hold_in_ring(
 def _ring_pull(
     muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
 ) -> Floats64:
-    """Displacement of places by a sphincter at full activation [mm], shape (n, 3)."""
+    """Displacement of points by a sphincter at full activation [mm], shape (n, 3)."""
     x = places.positions
     centre = muscle.centre.on(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
@@ -272,7 +272,7 @@ def _ring_pull(
 
 
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
-    """Return how far a sphincter lifts places off the mouth line for a round opening [mm], (n,).
+    """Return how far a sphincter lifts points off the mouth line for a round opening [mm], (n,).
 
     Seen from the front, the opening lies between two parabolas. Outside it the lips touch, so a
     funnel is narrower than the mouth.
@@ -285,12 +285,12 @@ def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats
 
 
 def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
-    """Middle of a sphincter's ellipse."""
+    """Centre of a sphincter's ellipse."""
     return (muscle.shape or muscle.centre).on(landmarks, side)
 
 
 def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Floats64:
-    """Points of a sphincter's ellipse about its middle, `half_deg` to both sides, (count, 3)."""
+    """Points of a sphincter's ellipse about its centre, `half_deg` to both sides, (count, 3)."""
     lateral, up, down = muscle.radii
     around = np.radians(muscle.arc_deg[0] + np.linspace(-half_deg, half_deg, count))
     height = np.where(np.sin(around) > 0.0, up, down)

@@ -122,7 +122,7 @@ class Pull:
 
     @property
     def changes(self) -> dict[Names, float]:
-        """Return the new values of the controls that changed, greatest change first."""
+        """Return new values of the changed controls, in order of their change, greatest first."""
         moved = np.abs(self._value - self._start) * self.mends
         changed = np.flatnonzero(moved > self.ROUND_TOLERANCE)
         order = sorted(changed, key=lambda n: -round(float(moved[n]), 3))
@@ -130,7 +130,7 @@ class Pull:
 
     @property
     def short(self) -> float:
-        """Remaining distance of the finger's middle from its target, as seen [head units]."""
+        """Remaining distance of the finger's centre from its target, as seen [head units]."""
         there = self._base.positions if self.mends else self._from
         return float(np.linalg.norm(self._left(self.targets, there)))
 
@@ -225,7 +225,7 @@ class Pull:
         return dict.fromkeys(names, moved)
 
     def _measure(self, which: npt.ArrayLike) -> None:
-        """Slopes of the skin in controls with the given numbers, at the current values."""
+        """Slopes of the skin in the controls with these indices, at the current values."""
         probe_share = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
             moved = self._towards(self.candidates[n], probe_share)

@@ -129,7 +129,7 @@ class Jaw(Record):
 
 @dataclass(frozen=True)
 class Eyes(Record):
-    """Eyeballs, and how the lids ride on them."""
+    """Eyeballs, and the contact of lids with them."""
 
     gaze_deg: Annotated[float, Within(0.0, 60.0)] = 30.0  # eye rotation at gaze = 1
     # share of the vertical gaze angle: up, down
@@ -178,7 +178,7 @@ class Fibre(Record):
 
 @dataclass(frozen=True)
 class Muscle(Record):
-    """The keys that all kinds of muscle share."""
+    """The keys of every kind of muscle."""
 
     name: Hidden[str] = field(default="", kw_only=True)  # the key of its table
     action: str  # its effect on the face, with the action units
@@ -214,7 +214,7 @@ class LinearMuscle(Muscle):
 
 @dataclass(frozen=True)
 class RingMuscle(Muscle):
-    """A sphincter or a part of one: skin on an elliptic ring is drawn to a centre and flared."""
+    """A sphincter or a part of one: skin on an elliptic ring moves to a centre, and outward."""
 
     centre: Point = MOUTH
     shape: Point | None = None  # middle of the ring

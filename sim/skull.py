@@ -80,7 +80,7 @@ class Eyeball:
 
     @property
     def gaze_share(self) -> float:
-        """Factor on a gaze, by which ball and lids turn.
+        """Factor on the angles of ball and lids: 1, or less for a ball larger than a human one.
 
         Iris and lids of a larger ball move as far as on a human ball, because artists put larger
         balls behind openings of human width.
@@ -91,7 +91,7 @@ class Eyeball:
 
 @dataclass(frozen=True)
 class Skull:
-    """Everything rigid under one face."""
+    """All rigid parts under one face."""
 
     condyles: Floats64  # (2, 3) mm: right, left
     mandible_weight: Floats64  # (V,) 0 = cranium .. 1 = mandible

@@ -6,8 +6,8 @@ bottom.
 
 A frame is cut into ticks, a tick into substeps:
 
-    tick      at most 1/60 s: bones, lids and muscle pulls are placed for the activations that hold
-              in its middle, which makes the lag second order
+    tick      at most 1/60 s: bones, lids and muscle pulls are computed for the activations in the
+              middle of the tick, so the error of their delay is second order
     substep   at most 1/300 s: forces, velocity, position, contact
 
 A frame of any length is divided into equal ticks and substeps, so no remainder is carried, and
@@ -54,7 +54,7 @@ def substeps_in(tick: float) -> int:
 
 
 def parts(whole: float, longest: float) -> int:
-    """Return into how many equal parts, none longer than `longest`, a time [s] is divided."""
+    """Return the number of equal parts of a time [s], none longer than `longest`."""
     return max(1, math.ceil(whole / longest - ROUNDING))
 
 
@@ -189,12 +189,12 @@ def accelerate(state: State) -> None:
 
 @njit
 def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
-    """Change velocities by the seal's pull over a substep, taken at its end (implicit Euler).
+    """Change velocities by the pull that the seal has at the end of the substep (implicit Euler).
 
-    An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w: s' = (s
-    - h k w c) / (1 + h^2 k w), stable for any stiffness k. The mass of a vertex in several pairs is
-      split among them (mass splitting, Tonge et al. 2012), so a weak seal pulls with its full force
-      for any number of pairs.
+    The distance c of a pair grows at speed s; w is the inverse mass. An implicit spring gives s' =
+    (s - h k w c) / (1 + h^2 k w), which is stable for any stiffness k. The mass of a vertex in
+      several pairs is split among them (mass splitting, Tonge et al. 2012), so a weak seal pulls
+      with its full force for any number of pairs.
     """
     rest = skin.rest
     mass = skin.mass
@@ -247,7 +247,7 @@ def move(state: State, h: float) -> None:
 
 @njit
 def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
-    """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
+    """Move lips that cross by more than `overlap` [mm] apart, and stop their approach."""
     rest = skin.rest
     mass = skin.mass
     lips = skin.lips
@@ -293,7 +293,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
 
 @njit
 def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None:
-    """Project skin out of the dental arches, away from their axes, and stop its approach.
+    """Move skin out of the dental arches, away from their axes, and stop its approach.
 
     The lower arch moves with the mandible.
     """
@@ -348,7 +348,7 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
 
 @njit
 def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
-    """Project skin out of the eyeballs and stop its approach."""
+    """Move skin out of the eyeballs, and stop its approach."""
     x = state.x
     v = state.v
     vertex = eyes.vertex

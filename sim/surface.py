@@ -57,16 +57,16 @@ class SkinSurface:
         return np.asarray(self.tree.query(points)[1], dtype=np.int32)
 
     def distances_from(self, vertices: Integers64) -> Floats64:
-        """Shortest path lengths along edges [mm] from some vertices, (V,); inf without a path."""
+        """Length of the shortest path from some vertices along edges [mm], (V,); else inf."""
         graph = self.graph.matrix(self.lengths)
         distance = csgraph.dijkstra(graph, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
     def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
-        """Return the vertices of shortest paths along edges from each given vertex to the next.
+        """Return the vertices of shortest paths along edges between consecutive given vertices.
 
-        hindrance: a number for each vertex, shape (V,). An edge costs its length times 1 + the mean
-        hindrance of its ends.
+        hindrance: for each vertex, shape (V,). An edge counts as its length times (1 + the mean
+        hindrance of its ends).
         """
         stops = np.asarray(vertices, dtype=np.int64)
         i, j = self.edges.T
@@ -86,7 +86,7 @@ class SkinSurface:
         return np.array(way, dtype=np.int32)
 
     def smoother(self, extent: float) -> Callable[[Floats64], Floats64]:
-        """Takes details smaller than about sqrt(`extent`) [mm2] out of fields (V,)."""
+        """Return a function that removes details below sqrt(`extent`) [mm2] from fields (V,)."""
         return _smoother(self.graph, self.edge_stiffness, self.areas, extent)
 
     def harmonic(

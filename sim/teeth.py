@@ -92,6 +92,6 @@ def _arch(teeth: Floats64) -> Floats64:
 
 
 def _inside(points: Floats64, arch: Floats64) -> Floats64:
-    """Distance to the axis as a share of the arch's, shape (n,)."""
+    """Distance from the axis, relative to the arch's surface there, shape (n,)."""
     share: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
     return share

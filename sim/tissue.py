@@ -111,11 +111,11 @@ class EdgeSprings(NamedTuple):
 
 
 def masses_for_step(areas: Floats64, stiffness: Floats64, step: float) -> Floats64:
-    """Return the mass of each vertex, (V,): of its skin, raised where the step would be unstable.
+    """Return the mass of each vertex's skin, (V,), raised where the step would be unstable.
 
     stiffness: bound on each row of the stiffness matrix (Gershgorin), shape (V,). An explicit step
     h is stable for h^2 K < 4 m. Small triangles would need a tiny step for the whole mesh, so their
-    vertices get heavier.
+    vertices get a larger mass.
     """
     # Share of the square of the largest stable step; the rest is margin for geometry.
     stable_step_share = 0.5

@@ -8,7 +8,7 @@ At rest the spine is the middle line of the part "tongue". Two controls bend it:
     tongue_up    the tip rises towards the palate, right behind the upper incisors
 
 The path lies over the current lower lip, and the gap between teeth and lips limits the tongue's
-thickness there. The tongue does not come out through a closed mouth. Each vertex keeps its place
+thickness there. The tongue does not come out through a closed mouth. Each vertex keeps its position
 along the spine and turns with it.
 
 Source: own; a tongue keeps its volume (Kier, Smith 1985, "Tongues, tentacles and trunks").
@@ -34,7 +34,7 @@ SAMPLES = 65  # number of points of the spine
 
 @dataclass(frozen=True)
 class Tongue:
-    """A tongue at rest, in the standard space, seen from the mandible."""
+    """A tongue at rest, in the space of the mandible at rest."""
 
     PATH_SETBACK = 10.0  # mm behind the lower incisors' edges: here the path over them begins
 
@@ -123,7 +123,7 @@ class Tongue:
         return float(np.clip(free_share, 0.0, 1.0)), float(thickness)
 
     def _on_path(self, out: float, lips: Floats64, thickness: float) -> Floats64:
-        """The spine on its way out, shape (SAMPLES, 2)."""
+        """The spine along the path out of the mouth, shape (SAMPLES, 2)."""
         _, middle, low, *_ = lips
         clearance = 0.6  # mm above teeth and lip
         above = 0.5 * thickness + clearance
@@ -199,7 +199,7 @@ def _edge(teeth: Floats64, *, up: float) -> Floats64:
 
 
 def _direction(spine: Floats64) -> Floats64:
-    """Angle [rad] above forward of the spine's direction towards its tip, at each point."""
+    """Angle between the spine towards its tip and the forward axis [rad], at each point."""
     forward, up = -np.gradient(spine, axis=0).T
     return np.unwrap(np.arctan2(up, forward))
 

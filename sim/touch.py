@@ -1,4 +1,4 @@
-"""Touches of the skin: blows, and pulls by springs."""
+"""Touches of the skin: impulses, and springs that pull."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .state import State
 
 
 class Touch:
-    """Blows and pulls on the skin of one simulation."""
+    """Impulses on the skin of one simulation, and springs that pull it."""
 
     def __init__(self, model: FaceModel, state: State, positions: Floats64, bones: Bones) -> None:
         """positions: the skin now [head units], shape (V, 3)."""
@@ -24,7 +24,7 @@ class Touch:
         self.end_drag()
 
     def kick(self, velocities: npt.ArrayLike) -> None:
-        """Add velocities [head units / s], shape (V, 3): a blow.
+        """Add velocities [head units / s], shape (V, 3): an impulse.
 
         Raises ValueError for another shape, and for values that are not finite.
         """
@@ -36,9 +36,9 @@ class Touch:
     ) -> None:
         """Attach vertices to springs until the next `drag` or `end_drag`: a finger pulls the skin.
 
-        vertices: their indices, shape (n,), none twice. targets: where each is drawn to [head
-        units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
-        shape (n,). Raises ValueError if these arguments do not fit together.
+        vertices: different vertex indices, shape (n,). targets: the point to which each is pulled
+        [head units], shape (n, 3). firmness: strength of each spring, 0 (none) .. 1 (holds against
+        any muscle), shape (n,). Raises ValueError if these arguments do not fit together.
         """
         wanted = "different vertex indices, shape (n,)"
         count = len(self._positions)
@@ -59,7 +59,7 @@ class Touch:
         self._stiffness = firm * self._model.skin.mass[indices] * finger_rate**2
 
     def end_drag(self) -> None:
-        """End every `drag`; the skin swings back."""
+        """Remove the springs of `drag`; the skin swings back."""
         self._vertices = np.zeros(0, np.int64)
         self._to = np.zeros((0, 3))
         self._stiffness = np.zeros(0)
@@ -77,6 +77,6 @@ class Touch:
             state.pull[self._vertices] += self._stiffness[:, None] * drawn
 
     def _in_standard_space(self, vectors: Floats64) -> Floats64:
-        """Vectors (n, 3) of the head as it is turned now, in the standard space [mm]."""
+        """Convert vectors (n, 3) on the turned head to the standard space [mm]."""
         standard = self._model.space.vectors_to_standard(vectors)
         return np.asarray(standard @ self._bones.head.rotation)

@@ -60,7 +60,7 @@ from ..kahler.table import (
     table_of,
 )
 from ..mesh.connectivity import Connectivity
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -122,14 +122,14 @@ class Blended(Cutting):
     def number(
         self, frame: FrameBuffers, vertex_count: int, triangle_count: int
     ) -> tuple[int, int]:
-        """Number the points in the middle of triangles after all others."""
+        """Number the centres of triangles after all others."""
         counts = frame.counts
         number_centres(frame.configurations, *self.patterns, frame.centre_triangles, counts)
         return vertex_count + int(counts[CENTRES]), int(counts[TRIANGLES])
 
     def place(self, scheme: Scheme, frame: FrameBuffers) -> None:
-        """Write the points in the middle of triangles; then let the scheme correct them."""
-        share(place_centres, frame.centre_count, self._mesh, frame)
+        """Write the centres of triangles; then let the scheme correct them."""
+        parallel_for(place_centres, frame.centre_count, self._mesh, frame)
         scheme.place_centres(frame)
 
 
@@ -155,7 +155,7 @@ def number_centres(
     centre_triangles: Unsigned32,
     counts: Integers64,
 ) -> None:
-    """List the triangles that have a point in the middle; count them, and all subtriangles.
+    """List the triangles that have a centre; count them, and all subtriangles.
 
     The arguments are arrays of `FrameBuffers`, and the two arrays of `Patterns`.
     """
@@ -219,7 +219,7 @@ def displaced(
 
 @njit
 def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers) -> None:
-    """Write the rows of the points in the middle of triangles, attributes too."""
+    """Write the rows of the centres of triangles, attributes too."""
     rows = frame.rows
     splits = frame.splits
     first_points = frame.first_points

@@ -15,8 +15,8 @@ surrounding triangles also underestimates bends. So for heights, but not for sha
 moved a little away from the normals of its neighbours: n - 0.15 x mean of the neighbours,
 normalised. This changes nothing on a plane, or on a sphere of equal triangles. An edge on a border
 takes its tangents from the border curve, because the normals of a surface do not determine its
-outline. Beside a corner of the border only the far end has a tangent, and the curve is a parabola.
-A chord as the tangent at the corner would make the curve flatter than skin is.
+outline. If one end is a corner of the border, only the other end has a tangent, and the curve is a
+parabola. With the chord as the tangent at the corner, the curve would be flatter than skin is.
 
 The *displacement* of a point is the vector from its place on the straight edge to the curve. Points
 of split edges are moved by the displacement times their geomorph weight (blending.py):
@@ -45,7 +45,7 @@ from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of, sharpened
 from ..mesh.fans import Fans, fans_around, fans_of
 from ..mesh.normals import cross_product, normalise
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -79,17 +79,17 @@ fit lies a little outside the curves. Measured on ellipsoids, a torus and heads,
 are almost equally good.
 """
 STEEPENING_SHARE = np.float32(0.15)
-"""Share of the neighbours' mean normal that is subtracted from a normal. A vertex normal is a mean,
-and this is a first step to undo the averaging. A second step, or a larger one, amplifies the noise
-of decimated meshes. Measured on two faces and their decimations: half a percentage point of 35
-better on scans, equal on smooth heads, and half a percentage point worse on the roughest and on a
-torus.
+"""Fraction of the neighbours' mean normal that is subtracted from a normal. A vertex normal is a
+mean, and the subtraction is a first step to undo the averaging. A second step, or a larger one,
+amplifies the noise of decimated meshes. Measured on two faces and their decimations: half a
+percentage point of 35 better on scans, equal on smooth heads, and half a percentage point worse on
+the roughest and on a torus.
 """
 EIGHTH = np.float32(1 / 8)
-"""Share of the end tangents in the middle of a cubic."""
+"""Weight of the end tangents in the middle of a cubic."""
 NEAR_WEIGHT = np.float32(9 / 64)
 FAR_WEIGHT = np.float32(3 / 64)
-"""Share of the nearer and of the farther tangent at a quarter of a cubic."""
+"""Weights of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER_SINE = 1e-9
 """Sine of an angle below which a triangle counts as degenerate and has no normal."""
 
@@ -102,7 +102,7 @@ class Tangents(NamedTuple):
     steeper: Floats32
     """Unit normals, moved away from the normals of their neighbours, shape (S, 3)."""
     off: Floats32
-    """Share of each neighbour's normal that is subtracted, shape (S,)."""
+    """Fraction of each neighbour's normal that is subtracted, shape (S,)."""
     ends: Unsigned32
     """Sectors at both ends of every edge, shape (E, 2); not used for edges on borders."""
     beyond: Unsigned32
@@ -164,15 +164,15 @@ class CubicScheme(Scheme):
         """Write unchanged vertices, and the points of split edges on their curves."""
         self.place_positions(frame)
         count = len(frame.points) + int(frame.counts[ONCE])
-        share(place_mean_normals, count, self._around.points, frame, self._normals)
+        parallel_for(place_mean_normals, count, self._around.points, frame, self._normals)
 
     def place_positions(self, frame: FrameBuffers) -> None:
         """Write positions only, as `place` does."""
         count = len(frame.points) + int(frame.counts[ONCE])
-        share(place_on_curves, count, self._around.points, frame, self._rows)
+        parallel_for(place_on_curves, count, self._around.points, frame, self._rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far one split would displace the middle of every edge, shape (E,).
+        """Write how far one split would displace the midpoint of every edge, shape (E,).
 
         The normal in the middle is the mean of the normals at the ends, so `turns`, shape (E,), are
         set to zero.
@@ -184,17 +184,19 @@ class CubicScheme(Scheme):
         fans = self._fans
         tangents = self._tangents
         crosses = self._crosses
-        share(cross_products, len(crosses), positions, self._mesh.faces, crosses)
+        parallel_for(cross_products, len(crosses), positions, self._mesh.faces, crosses)
         corners = fans.corner_starts, fans.corners
         weights = self._weights, crosses, tangents.normals
-        share(weighted_normals, len(tangents.off), *corners, *weights)
+        parallel_for(weighted_normals, len(tangents.off), *corners, *weights)
         if self._whole_fans is not None:
             around = self._whole_fans.corner_starts, self._whole_fans.corners
             given = self._weights, crosses, self._normals
-            share(weighted_normals, len(positions), *around, *given)
+            parallel_for(weighted_normals, len(positions), *around, *given)
         neighbours = fans.neighbour_starts, fans.neighbours
-        share(steepen_normals, len(tangents.off), *neighbours, *tangents[:3])
-        share(displace_cubic, len(self._mesh.edges), self._around, positions, tangents, self._rows)
+        parallel_for(steepen_normals, len(tangents.off), *neighbours, *tangents[:3])
+        parallel_for(
+            displace_cubic, len(self._mesh.edges), self._around, positions, tangents, self._rows
+        )
 
 
 @njit
@@ -334,7 +336,7 @@ def displace_cubic(
 
 @njit
 def displacement_sizes(displacements: Floats32, sizes: Floats32) -> None:
-    """Write how far the middle of every edge is displaced, shape (E,)."""
+    """Write how far the midpoint of every edge is displaced, shape (E,)."""
     for e in range(sizes.shape[0]):
         middle = row_of(displacements[e], MIDDLE)
         sizes[e] = np.sqrt(dot(middle, middle))

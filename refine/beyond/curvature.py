@@ -25,8 +25,8 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice
 
 USUAL_LENGTH = 1.0 / 40.0
-"""The usual length of an edge, in sizes of the mesh: there the measure equals the height of the
-arc.
+"""The usual length of an edge, in sizes of the mesh: an edge of this length has the height of its
+arc as its measure.
 """
 
 
@@ -44,7 +44,7 @@ class RestCurvature(Measuring):
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh stays unchanged.
 
         The defaults are chosen by eye on a head of 2030 triangles, 720 pixels high: lower limits do
-        not improve its outline. Splits must cover a round place completely: smoothing moves
+        not improve its outline. Splits must cover a round region completely: smoothing moves
         vertices at split edges inward, and a vertex without splits would stick out beside them.
         `levels`: the most splits of an edge.
         """

@@ -9,7 +9,7 @@ of the finer mesh whose surface faces the same way, both at rest. A point is dis
 times as far as its closest point, as in the scheme `cubic`, because triangles between points are
 flat. The difference from the cubic is stored along three directions that move with the surface:
 
-          n                                     stored:  how the finer surface lies beside the
+          n                                     stored:  offset of the finer surface from the
           |                                              point, along n, t and n x t
     a-----o------> t = b - a
          /                                      n:  upright on the edge in its middle, half way from
@@ -50,7 +50,7 @@ class DetailScheme(CubicScheme):
     """Cubic edges with the additional form of a finer mesh at rest."""
 
     def __init__(self, finer: FinerMesh | None = None) -> None:
-        """`finer`: positions at rest, in the place of the coarse mesh, and triangles.
+        """`finer`: positions at rest, aligned with the coarse mesh, and triangles.
 
         Raises ValueError without a finer mesh, such as when the scheme is chosen by the name
         `detail` alone.
@@ -81,21 +81,21 @@ class DetailScheme(CubicScheme):
         middle_axes(self._around, rest, normals, self._axes)
         quarter_axes(self._around, rest, normals, self._every_edge, self._axes)
 
-        share = np.array([0.25, 0.5, 0.75])[:, None]
+        fraction = np.array([0.25, 0.5, 0.75])[:, None]
         start, end = connectivity.edges.T
-        straight = (1.0 - share) * rest_positions[start][:, None]
-        straight += share * rest_positions[end][:, None]
+        straight = (1.0 - fraction) * rest_positions[start][:, None]
+        straight += fraction * rest_positions[end][:, None]
         points = straight + self._displacements
-        ways = (1.0 - share) * normals[start][:, None] + share * normals[end][:, None]
+        directions = (1.0 - fraction) * normals[start][:, None] + fraction * normals[end][:, None]
         away = WRONG_SIDE_DISTANCE * float(mean_length(connectivity, rest_positions))
-        found = closest_points(points.reshape(-1, 3), *self._finer, ways.reshape(-1, 3), away)
-        places = found.interpolate(self._finer[0]).reshape(points.shape)
-        missing = straight + float(FULLNESS) * (places - straight) - points
+        found = closest_points(points.reshape(-1, 3), *self._finer, directions.reshape(-1, 3), away)
+        closest = found.interpolate(self._finer[0]).reshape(points.shape)
+        missing = straight + float(FULLNESS) * (closest - straight) - points
         axes = self._axes.astype(np.float64)
         self._offsets = np.einsum("epij,epj->epi", axes, missing).astype(np.float32)
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Compute the displacements of the points on all edges; middles have their detail."""
+        """Compute the displacements of the points on all edges, with detail only at midpoints."""
         super().prepare(frame)
         middle_axes(self._around, frame.positions, self._normals, self._axes)
         self._add(self._every_edge, MIDDLE)
@@ -143,7 +143,7 @@ def write_axes(up: Vector, towards: Vector, axes: Floats32) -> None:
 def middle_axes(
     around: Surroundings, positions: Floats64, normals: Floats32, axes: Floats32
 ) -> None:
-    """Write the directions at the middles of all edges: normal to the edge, along it, across both.
+    """Write the directions at the midpoints of edges: normal to the edge, along it, across both.
 
     The first direction is the mean of the normals at both ends, made normal to the edge. `normals`:
     of vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
@@ -161,7 +161,7 @@ def middle_axes(
 def quarter_axes(
     around: Surroundings, positions: Floats64, normals: Floats32, edges: Unsigned32, axes: Floats32
 ) -> None:
-    """Write the directions at the quarters of some edges, shape (N,), from those at the middles.
+    """Write the directions at the quarters of some edges, shape (N,), from those at the midpoints.
 
     The first direction is half way between that of the middle and the normal at the near end. So a
     point near a vertex turns with the vertex, not with the edge.

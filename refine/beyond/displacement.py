@@ -1,4 +1,4 @@
-"""The criterion `displacement`: how far a split moves an edge's middle and turns its normal.
+"""The criterion `displacement`: how far a split moves an edge's midpoint and turns its normal.
 
 Where the straight edge is far from the scheme's curve, the unsplit mesh is wrong. Where the normal
 in the middle differs from the mean of those at the ends, the shading is wrong. The criterion needs
@@ -25,8 +25,8 @@ from .blending import RAMP_WIDTH
 from .measuring import Measuring, Once, Twice, mean_length
 
 GROWTH_SHARE = 0.6
-"""Share of the first threshold over which a blended point moves to its final position. Chosen
-small, because a half moved point costs as much as a fully moved one; with a still smaller share,
+"""Fraction of the first threshold over which a blended point moves to its final position. Chosen
+small, because a half moved point costs as much as a fully moved one; with a still smaller one,
 the surface moves faster than its input.
 """
 
@@ -40,9 +40,9 @@ Turning = Annotated[
 
 
 class Displacement(Measuring):
-    """The criterion `displacement`: how far a split moves an edge's middle and turns its normal.
+    """The criterion `displacement`: how far a split moves an edge's midpoint and turns its normal.
 
-    Places that are coarse at rest count as well, unlike in the paper.
+    Unlike in the paper, edges that are too coarse at rest also count.
     """
 
     uses_normals = False
@@ -103,14 +103,14 @@ def count_turns(sizes: Floats32, turns: Floats32, scale: np.float32) -> None:
 
 @njit
 def weigh_borders(sizes: Floats32, borders: Unsigned32) -> None:
-    """Multiply the sizes, shape (E,), of the border edges with the given numbers, shape (B,)."""
+    """Multiply the sizes, shape (E,), of the edges `borders`, shape (B,), by BORDER_WEIGHT."""
     for k in range(borders.shape[0]):
         sizes[borders[k]] *= BORDER_WEIGHT
 
 
 @njit
 def advance_metric(metric: Floats32, soon: np.float32, ramp: np.float32) -> None:
-    """Scale the metrics, shape (E,): `soon` becomes `ramp`, where points are fully moved."""
+    """Scale the metrics, (E,), so that `soon` becomes `ramp`, at which points are fully moved."""
     if soon >= ramp:
         return
     for e in range(metric.shape[0]):

@@ -1,7 +1,7 @@
 """The factory of the refiner `kahler`: it turns option names into objects.
 
 By default the refiner follows the paper exactly (`refine.Kahler`). Options choose other criteria
-and schemes, by name or as objects, and blend new points in (`Blended`).
+and schemes, by name or as objects, and let new points appear gradually (`Blended`).
 """
 
 from collections.abc import Sequence
@@ -63,8 +63,8 @@ def create_kahler(
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
     - `criterion`: "normal", "rest", "silhouette", "displacement", another name of
-      `refine.criteria`, an object, or a list of these; each edge gets the most splits that any of
-      them wants. "normal+rest" is such a list.
+      `refine.criteria`, an object, or a list of these; each edge is split as often as any of
+      them asks. "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles (`splits_of_clip`).
     - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object such as

@@ -4,7 +4,7 @@ Kähler, Haber, Seidel 2003, interpolate the normal of a new point from those at
 (section 4.4). Then smooth shading cannot show the form that a split adds: only outlines and
 highlights change. This scheme uses the surface in which every edge is split once:
 
-              c                m    middles of all edges, where the scheme puts them
+              c                m    points of all edges, where the scheme puts them
              / \ C middle of a triangle: its corners' mean, and 0.511 of the
           m /   \ m                 each m stands out of its edge
            /  C  \
@@ -18,8 +18,8 @@ Both normals are sums of the cross products of the small triangles around the po
 depend on the splits of this frame, so no normal jumps when an edge is split. Normals at m are
 computed on split edges, or on all edges if the criterion measures them. The normal of a new point
 begins as the mean of the normals at the ends of its edge. It reaches the normal of the surface when
-the point has gone a third of its way (blending.py). The normal at a quarter point is the mean of
-the normals of its neighbours.
+the point has moved a third of its displacement (blending.py). The normal at a quarter point is the
+mean of the normals of its neighbours.
 
 Differs from the paper, whose rule is `normals="linear"`.
 """
@@ -32,7 +32,7 @@ from ..kahler.frame import ONCE, ROWS, FrameBuffers
 from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import sharpened
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     ONE,
     ZERO,
@@ -47,9 +47,9 @@ from ..mesh.vectors import (
 from .whole_surface import WholeSurface, between_rows
 
 NORMAL_HASTE = np.float32(3.0)
-"""Factor by which the normal of a new point changes faster than its position. Chosen because a turn
-of shading is less visible than a jump of the surface, and a half turned normal uses a triangle for
-half of its effect.
+"""Ratio of the speeds at which the normal and the position of a new point change. Chosen above 1:
+shading that changes is less visible than a surface that jumps, and a triangle whose normal is half
+turned has half its effect.
 """
 
 
@@ -90,20 +90,20 @@ class RefinedNormals(Scheme):
         self._surface.find_normals_of_edges(frame.split_edges)
         self._scheme.place_positions(frame)
         count = len(frame.points) + int(frame.counts[ONCE])
-        share(turn_normals, count, self._mesh.around.points, frame, self._surface.normals)
+        parallel_for(turn_normals, count, self._mesh.around.points, frame, self._surface.normals)
 
     def place_centres(self, frame: FrameBuffers) -> None:
-        """Let the scheme correct the middles of triangles, and turn their normals."""
+        """Let the scheme correct the centres of triangles, and turn their normals."""
         self._scheme.place_centres(frame)
         triangles = self._mesh.faces, self._mesh.triangle_edges
-        share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
+        parallel_for(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
     def outlined(self, connectivity: Connectivity) -> Flags:
-        """Edges within the surface that the scheme takes as outlines, shape (E,)."""
+        """Flags of interior edges that the scheme treats as outlines, shape (E,)."""
         return self._scheme.outlined(connectivity)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far a split moves the middle of every edge, and turns its normal, (E,) each.
+        """Write how far a split moves the midpoint of every edge, and turns its normal, (E,) each.
 
         The normal of a vertex on a crease is a mean over both sides. So a split would not correct
         the turn of edges that end there, and their turn is zero.
@@ -119,7 +119,7 @@ def turn_normals(
     """Write the normals of vertices, and of points on split edges by their geomorph weights.
 
     The loop runs over vertices, and then over split edges. `points`: ends and opposite corners of
-    edges, shape (E, 4); `normals`: of vertices and middles of edges, shape (V + E, 3).
+    edges, shape (E, 4); `normals`: of vertices and points of edges, shape (V + E, 3).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]
@@ -152,9 +152,10 @@ def turn_centres(
     frame: FrameBuffers,
     rows: Floats32,
 ) -> None:
-    """Turn the normals of points in the middle of triangles, by their least geomorph weight.
+    """Turn the normals of centres of triangles, by their least geomorph weight.
 
-    They turn to the normal of the hexagon of corners and middles, from `rows`, shape (V + E, 6).
+    They turn to the normal of the hexagon of corners and split points, from `rows`, shape (V + E,
+    6).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]

@@ -13,7 +13,7 @@ from ..kahler.look_up import SIDE_BITS
 from ..mesh.connectivity import Connectivity
 from ..mesh.fans import fans_of
 from ..mesh.normals import normalise
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -34,21 +34,21 @@ from ..mesh.vectors import (
 )
 
 CENTRE_SHARE = np.float32(0.511)
-"""Share of the edges' displacements in the middle of a triangle: 4/9 (blending.py) plus 15 %,
+"""Weight of the edges' displacements in the centre of a triangle: 4/9 (blending.py) plus 15 %,
 because curves between these points stand out farther. With this share the normals are closest to
 the normals of a dense head.
 """
 MEAN_NORMAL_SHARE = np.float32(0.02)
 """Weight of the mean of the ends' normals, in squared lengths of the edge, that is added to a
-normal in the middle. Chosen: it matters where a fold leaves no width across an edge. A larger
+normal at a split point. Chosen: it matters where a fold leaves no width across an edge. A larger
 weight is softer in deep folds, but farther from dense faces: 0.3 loses five of thirty percentage
 points.
 """
 
 OfEdges = tuple[Unsigned32, Unsigned32, Flags, Floats32, Floats32, Floats32]
 """The arrays that kernels over all edges read: `around.points`, `edge_sides`, `around.is_interior`
-(mesh/), rows of vertices and middles, shape (V + E, 6), centres of triangles, (F, 3), normals, (V +
-E, 3). It is a plain tuple, because numba takes it faster than a named tuple.
+(mesh/), rows of vertices and edge points, shape (V + E, 6), centres of triangles, (F, 3), normals,
+(V + E, 3). It is a plain tuple, because numba takes it faster than a named tuple.
 """
 
 
@@ -71,12 +71,12 @@ class WholeSurface:
         self._corners = np.zeros((3 * len(mesh.faces), 3), dtype=np.float32)
         self._has_all_edges = False
         self.rows = rows
-        """Positions and normals of the vertices, then of the middles of all edges, shape (V + E,
+        """Positions and normals of the vertices, then of the points of all edges, shape (V + E,
         6). Positions are relative to the first vertex in use, so that a mesh far from the origin
         keeps its precision.
         """
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
-        """Unit normals of these rows, shape (V + E, 3); of middles only after
+        """Unit normals of these rows, shape (V + E, 3); of edges only after
         `find_normals_of_edges`.
         """
         around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
@@ -89,7 +89,7 @@ class WholeSurface:
         positions = frame.positions
         near = self._frame.positions
         points = self._frame.points
-        share(see_from, len(positions), positions, self._origin, near, points)
+        parallel_for(see_from, len(positions), positions, self._origin, near, points)
         return self._frame
 
     def find_normals(self) -> None:
@@ -97,26 +97,28 @@ class WholeSurface:
         mesh = self._mesh
         triangles = mesh.faces, mesh.triangle_edges
         of_triangles = self._centres, self._corners
-        middles = self.rows[mesh.vertex_count :]
-        share(cross_corners, len(mesh.faces), *triangles, self.rows, middles, *of_triangles)
+        edge_points = self.rows[mesh.vertex_count :]
+        parallel_for(
+            cross_corners, len(mesh.faces), *triangles, self.rows, edge_points, *of_triangles
+        )
         fans = self._fans.corner_starts, self._fans.corners
-        share(sum_corners, mesh.vertex_count, *fans, self._corners, self.normals)
+        parallel_for(sum_corners, mesh.vertex_count, *fans, self._corners, self.normals)
         self._has_all_edges = False
 
     def find_normals_of_edges(self, edges: Unsigned32) -> None:
-        """Compute the normals in the middles of `edges`, (N,), unless all are known already."""
+        """Compute the normals at the points of `edges`, (N,), unless all are known already."""
         if self._has_all_edges:
             return
-        share(surface_normals_of_edges, len(edges), edges, self._of_edges)
+        parallel_for(surface_normals_of_edges, len(edges), edges, self._of_edges)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write the distances of middles from their edges, and turns of their normals, (E,) each.
+        """Write the distances of split points from edges, and turns of their normals, (E,) each.
 
         A turn is the angle between the normal and the mean of the normals at the ends [rad], times
-        the length of the edge. This computes the normals of all middles.
+        the length of the edge. This computes the normals at all split points.
         """
         means = self._corners  # no longer needed, and large enough
-        share(measure_edges, len(turns), self._of_edges, means, displacements, turns)
+        parallel_for(measure_edges, len(turns), self._of_edges, means, displacements, turns)
         self._has_all_edges = True
 
 
@@ -144,15 +146,15 @@ def cross_corners(
     faces: Unsigned32,
     triangle_edges: Integers32,
     rows: Floats32,
-    middles: Floats32,
+    edge_points: Floats32,
     centres: Floats32,
     corners: Floats32,
 ) -> None:
-    """Write the points in the middle of triangles with three split edges, shape (F, 3).
+    """Write the centres of triangles with three split edges, shape (F, 3).
 
     Also write the summand of each triangle in the normals at its corners, shape (3 F, 3); it is
-    zero for a triangle that names a vertex twice. `rows`, `middles`: of vertices and of all edges,
-    shape (V + E, 6) and (E, 6).
+    zero for a triangle that names a vertex twice. `rows`: of vertices and of all
+    edges, shape (V + E, 6); `edge_points`: of all edges, (E, 6).
     """
     assert (
         faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
@@ -168,10 +170,10 @@ def cross_corners(
         a = row_of(rows, faces[t, 0])
         b = row_of(rows, faces[t, 1])
         c = row_of(rows, faces[t, 2])
-        ab = row_of(middles, np.uint32(triangle_edges[t, 0]))
-        bc = row_of(middles, np.uint32(triangle_edges[t, 1]))
-        ca = row_of(middles, np.uint32(triangle_edges[t, 2]))
-        # The sum of displacements is the sum of the middles minus that of the corners.
+        ab = row_of(edge_points, np.uint32(triangle_edges[t, 0]))
+        bc = row_of(edge_points, np.uint32(triangle_edges[t, 1]))
+        ca = row_of(edge_points, np.uint32(triangle_edges[t, 2]))
+        # The sum of displacements is the sum of the split points minus that of the corners.
         three = plus(plus(a, b), c)
         out = less(plus(plus(ab, bc), ca), ONE, three)
         centre = plus(times(THIRD, three), times(CENTRE_SHARE, out))
@@ -207,18 +209,19 @@ def sum_corners(
 
 
 @njit
-def across_middle(
+def across_edge(
     e: Number,
     mean: Vector,
     along: Vector,
-    middle: Vector,
+    edge_point: Vector,
     edge_sides: Unsigned32,
     is_interior: Flags,
     centres: Floats32,
 ) -> Vector:
-    """Return a vector of any length, normal to the surface in the middle of edge e.
+    """Return a vector of any length, normal to the surface at the point of edge e.
 
-    mean: mean of the normals at its ends; along: vector from end to end; middle: its split point.
+    mean: mean of the normals at its ends; along: vector from end to end; edge_point: its split
+    point.
     `edge_sides`, `is_interior`: of edges; `centres`: of triangles, shape (F, 3).
     """
     side = edge_sides[e, 0] >> SIDE_BITS
@@ -226,7 +229,7 @@ def across_middle(
     has_two = beyond < centres.shape[0]
     if has_two and not is_interior[e]:
         return mean  # sheets that meet at a border share no normal
-    far = row_of(centres, beyond) if has_two else middle
+    far = row_of(centres, beyond) if has_two else edge_point
     across = less(row_of(centres, side), ONE, far)
     steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
     return plus(cross(along, across), steady)
@@ -234,9 +237,9 @@ def across_middle(
 
 @njit
 def surface_normals_of_edges(first: int, last: int, edges: Unsigned32, of_edges: OfEdges) -> None:
-    """Write unit normals of the middles of edges; those of the vertices must be known.
+    """Write unit normals at the points of edges; those of the vertices must be known.
 
-    `edges`: numbers of these edges, shape (N,).
+    `edges`: indices of these edges, shape (N,).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
     vertex_count = normals.shape[0] - points.shape[0]
@@ -246,9 +249,9 @@ def surface_normals_of_edges(first: int, last: int, edges: Unsigned32, of_edges:
         b = points[e, 1]
         row = np.uint32(vertex_count + e)
         mean = times(HALF, plus(row_of(normals, a), row_of(normals, b)))
-        middle = row_of(rows, row)
+        edge_point = row_of(rows, row)
         along = between_rows(rows, a, b)
-        normal = across_middle(e, mean, along, middle, edge_sides, is_interior, centres)
+        normal = across_edge(e, mean, along, edge_point, edge_sides, is_interior, centres)
         write_row(normals, row, unit(normal))
 
 
@@ -261,9 +264,9 @@ def measure_edges(
     displacements: Floats32,
     turns: Floats32,
 ) -> None:
-    """Write unit normals of the middles of consecutive edges, and measure the edges.
+    """Write unit normals at the points of consecutive edges, and measure the edges.
 
-    The measures are the distance of each middle from its straight edge, and the turn of its normal
+    The measures are the distance of each point from its straight edge, and the turn of its normal
     times the length of the edge, (E,) each. `means`: scratch, at least (E, 3).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
@@ -277,11 +280,11 @@ def measure_edges(
         sum_of_normals = plus(row_of(normals, a), row_of(normals, b))
         at_a = row_of(rows, a)
         at_b = row_of(rows, b)
-        middle = row_of(rows, row)
+        edge_point = row_of(rows, row)
         along = less(at_b, ONE, at_a)
-        out = less(middle, HALF, plus(at_a, at_b))
+        out = less(edge_point, HALF, plus(at_a, at_b))
         mean = times(HALF, sum_of_normals)
-        normal = across_middle(e, mean, along, middle, edge_sides, is_interior, centres)
+        normal = across_edge(e, mean, along, edge_point, edge_sides, is_interior, centres)
         write_row(normals, row, normal)
         write_row(means, e, sum_of_normals)
         displacements[e] = dot(out, out)

@@ -49,7 +49,7 @@ class BaseRefiner(Refiner):
     positions: Floats64
     """Positions of this frame, copied because a simulation may continue meanwhile."""
     points: Floats32
-    """The same in single precision."""
+    """`positions` in single precision."""
     normals: Floats32
     """Vertex normals of this frame after `find_normals`, shape (V, 3)."""
     edge_splits: Unsigned8
@@ -118,7 +118,7 @@ class BaseRefiner(Refiner):
             write_wedges(self.connectivity, self._wedge_values, rows)
 
     def follow_values(self) -> None:
-        """Take over the values of a frame; a subclass with copies of values extends this method.
+        """Use the new values of a frame; a subclass with copies of values extends this method.
 
         It is called before `fill` if the values differ from those of the frame before.
         """
@@ -126,11 +126,11 @@ class BaseRefiner(Refiner):
         spread_over_wedges(self._values.values, self._mesh.wedge_uv, self._wedge_values)
 
     def origins(self) -> Origins:
-        """Return the places of the wedges on the input mesh; a subclass appends its points."""
+        """Return the origins of the wedges on the input mesh; a subclass appends its points."""
         return Origins.at(self.connectivity.wedge_vertices)
 
     def __reduce__(self) -> str:
-        """Raise TypeError: arrays of a refiner share memory, and in a copy they would not."""
+        """Raise TypeError: arrays of a refiner share memory, and arrays of a copy would not."""
         raise TypeError(
             "a refiner cannot be copied, pickled or sent to another process; make one there with "
             "refine.create from the same faces and rest positions"

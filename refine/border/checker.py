@@ -30,7 +30,7 @@ from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
 PARTS = 2**9 * 3**2 * 5 * 7
-"""Parts of an edge: places are rounded to this lattice, so that equal places compare equal.
+"""Steps along an edge of the lattice to which places are rounded, so equal places compare equal.
 
 The points of nine levels of halving lie on the lattice, and so do thirds, fifths, sevenths and
 ninths of most of them; all may have rounding errors of single precision. Any other place must have

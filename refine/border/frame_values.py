@@ -67,7 +67,7 @@ class FrameValues:
 
 
 def refuse(given: FrameValuesLike | None) -> None:
-    """Raise ValueError if a frame brings values although no attribute was bound."""
+    """Raise ValueError if a frame has values although no attribute was bound."""
     for name in given or ():
         raise ValueError(_unknown(name, []))
 

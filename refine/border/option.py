@@ -24,7 +24,7 @@ _KINDS: Mapping[type, Kind] = MappingProxyType(
     {bool: "switch", int: "integer", float: "number", str: "word"}
 )
 LEFT_OPEN = "automatic"
-"""The word that stands for None, an open choice."""
+"""The word for the value None, which leaves the choice to the refiner."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def signature_of(factory: Callable[..., Any]) -> inspect.Signature:
 
 
 def options_of(signature: inspect.Signature, first: int = 0) -> Iterator[Option]:
-    """Return the options of a factory: all keyword arguments from the place `first` on."""
+    """Return the options of a factory: all its keyword arguments from index `first` on."""
     for parameter in list(signature.parameters.values())[first:]:
         if parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             yield _option_of(parameter)

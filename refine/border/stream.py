@@ -1,4 +1,4 @@
-"""Arrays for frames: arrays lent by the caller, and the refiner's own arrays."""
+"""Arrays for the output of a frame: arrays lent by the caller, and the refiner's own arrays."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ class StreamArrays(NamedTuple):
     vertices: Floats32
     """Rows of the output (rows.py), shape (.., k)."""
     triangles: Unsigned32
-    """Corners of the triangles, as numbers of rows, shape (.., 3)."""
+    """Corners of the triangles, as row indices, shape (.., 3)."""
     source: Integers32
     """Input triangle that each triangle is part of, shape (..,)."""
 

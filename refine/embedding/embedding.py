@@ -1,9 +1,9 @@
 """A fine mesh that follows the smooth surface of a coarse one: a wrap deformer.
 
-Each fine vertex is bound once to a place on the surface at rest (places.py), with its offset from
-there. In a frame the offset turns with the surface: by the mean of the rotations at the patch's
-corners (patches.py), weighted by the barycentric coordinates of the place. Place and offset are
-continuous across the edges of the coarse mesh, and no triangle is split.
+Each fine vertex is bound once to a point of the surface at rest (places.py), with its offset from
+this point. In a frame the offset turns with the surface: by the mean of the rotations at the
+patch's corners (patches.py), weighted by the barycentric coordinates of the point. Point and offset
+are continuous across the edges of the coarse mesh, and no triangle is split.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from ...jit import njit
 from ..beyond.cubic import SLIVER_SINE
 from ..mesh.connectivity import connect_writable
 from ..mesh.creases import with_creases
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.validation import (
     LARGEST_COORDINATE,
     as_array,
@@ -77,11 +77,12 @@ class Embedding:
         `normals`: directions in which the fine surface faces, of any length, shape (N, 3); a zero
         vector allows any direction. A triangle that faces the other way counts as ten mean edges
         farther away, so no vertex of one lip is bound to the other lip where they touch. `labels`,
-        integers of shape (N,), `face_labels`, (F,): a fine vertex is bound only to triangles with
-        the same label. `crease_angle`: edges that are sharper at rest [degrees] stay sharp.
+        integers of shape (N,), and `face_labels`, (F,): a fine vertex is bound only to triangles
+        with the same label. `crease_angle`: edges that are sharper at rest [degrees] stay sharp.
         `stretch_offsets`: whether offsets are also scaled by the stretch of the surface around
         them; else they only turn. `groups`, integers of shape (N,): fine vertices with the same
-        number share the place of the first of them, so a hair keeps its shape and follows its root.
+        number are bound to the point of the first of them, so a hair keeps its shape and follows
+        its root.
         `places`: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace
         the search: one for each group, numbered from 0 on, or, without groups, one for each fine
         vertex. Raises ValueError for arrays that do not fit together, points that are not finite,
@@ -89,7 +90,7 @@ class Embedding:
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
-        ways = None if normals is None else checked_vectors("normals", normals, len(fine))
+        directions = None if normals is None else checked_vectors("normals", normals, len(fine))
         self._is_used = used_vertices(triangles, len(rest))
         self._positions = rest.copy()
         self._points = rest.astype(np.float32)  # not used; checks all values
@@ -102,7 +103,7 @@ class Embedding:
             found = _given_places(places, labels, members, is_proper, len(fine))
         else:
             bound, label_of = _groups(labels, face_labels, len(fine), is_proper)
-            found = nearest_places(fine, ways, rest, triangles, bound)
+            found = nearest_places(fine, directions, rest, triangles, bound)
             surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
             settle(fine, surface, across_edges(mesh, label_of), *found)
             found = _of_first(members, *found)
@@ -115,8 +116,8 @@ class Embedding:
         on_surface = np.empty_like(fine)
         self._place(np.zeros_like(fine), on_surface)
         self.offsets = fine - on_surface
-        if ways is not None:
-            self._normals = unit_vectors(ways, 1e-300).astype(np.float32)
+        if directions is not None:
+            self._normals = unit_vectors(directions, 1e-300).astype(np.float32)
         self.offsets = read_only(self.offsets)
 
     def evaluate(
@@ -135,11 +136,11 @@ class Embedding:
             return EmbeddedPoints(moved, None)
         turned = np.empty_like(self._normals)
         given_places = self._surface.rows, self._numbers, self.weights
-        share(turn_vectors, len(turned), *given_places, self._normals, turned)
+        parallel_for(turn_vectors, len(turned), *given_places, self._normals, turned)
         return EmbeddedPoints(moved, turned)
 
     def carry(self, values: npt.ArrayLike) -> Floats64:
-        """Interpolate values of coarse vertices, (V,) or (V, k), at fine ones: (N,) or (N, k).
+        """Interpolate values of coarse vertices, (V,) or (V, k), at fine vertices: (N,) or (N, k).
 
         They are linear in each triangle. Raises ValueError for another number of values.
         """
@@ -156,7 +157,7 @@ class Embedding:
 
     def _place(self, offsets: Floats64, moved: Floats64) -> None:
         places = self._surface.rows, self._numbers, self.weights
-        share(place_points, len(moved), *places, offsets, self._stretch, moved)
+        parallel_for(place_points, len(moved), *places, offsets, self._stretch, moved)
 
 
 def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Floats64:
@@ -181,7 +182,7 @@ def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Float
 def _of_first(
     groups: Integers64 | None, triangles: Integers64, weights: Floats64
 ) -> tuple[Integers64, Floats64]:
-    """Return the places of fine vertices; a group has the place of its first vertex."""
+    """Return the bound points of fine vertices; a group has the point of its first vertex."""
     if groups is None:
         return triangles, weights
     _, first, number = np.unique(groups, return_index=True, return_inverse=True)
@@ -294,7 +295,7 @@ def place_points(
     stretched: float,
     moved: Floats64,
 ) -> None:
-    """Write fine points, shape (N, 3): their places on the patches `numbers` plus turned offsets.
+    """Write fine points, shape (N, 3): their points on the patches `numbers` plus turned offsets.
 
     `stretched`: how far offsets follow the stretch of the surface, 0 to 1.
     """

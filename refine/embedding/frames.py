@@ -38,9 +38,9 @@ class SectorFans(NamedTuple):
     """Sector s has the corners `starts[s]` up to `starts[s + 1]` in the arrays below, (S + 1,)."""
     corners: Unsigned32
     """Vertices of each corner's triangle, the sector's own vertex first, shape (K, 3)."""
-    shares: Floats64
+    contributions: Floats64
     """Contributions of a triangle to the axes, shape (K, 5): the weight of its cross product; then,
-    for each of two directions in the surface, the shares of its first and second edge.
+    for each of two directions in the surface, the factors of the first and the second edge.
     """
 
 
@@ -57,10 +57,10 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
     crosses = cross_products(rest, mesh.faces)
     areas = np.linalg.norm(crosses, axis=1)
     is_unsound = np.zeros(count, dtype=np.bool_)
-    for share_of in (weights, np.ones_like(weights)):
-        vectors = (share_of[:, :, None] * crosses[:, None]).reshape(-1, 3)
+    for weight in (weights, np.ones_like(weights)):
+        vectors = (weight[:, :, None] * crosses[:, None]).reshape(-1, 3)
         sums = np.linalg.norm(_sums(sectors.ravel(), vectors, count), axis=1)
-        sizes = _sums(sectors.ravel(), (share_of * areas[:, None]).reshape(-1, 1), count)[:, 0]
+        sizes = _sums(sectors.ravel(), (weight * areas[:, None]).reshape(-1, 1), count)[:, 0]
         is_unsound |= sums < LEAST_SIDE * sizes
     corners = np.flatnonzero(is_unsound[sectors])
     sectors.ravel()[corners] = count + np.arange(len(corners))
@@ -81,13 +81,18 @@ def fans_of_sectors(
     fans = np.stack([mesh.faces[triangle, (around + step) % 3] for step in range(3)], axis=1)
     weights = np.zeros(mesh.faces.shape)
     weigh_corners(rest, mesh.faces, weights)
-    shares = _shares(rest, fans, number, weights.ravel()[around])
+    contributions = _contributions(rest, fans, number, weights.ravel()[around])
     starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
-    return SectorFans(starts, np.ascontiguousarray(fans), shares)
+    return SectorFans(starts, np.ascontiguousarray(fans), contributions)
 
 
-def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64) -> Floats64:
-    """Return `SectorFans.shares`; `sector`: of each corner, (K,); `weights`: of crosses, (K,)."""
+def _contributions(
+    rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Floats64
+) -> Floats64:
+    """Return `SectorFans.contributions`.
+
+    `sector`: of each corner, (K,). `weights`: of cross products, (K,).
+    """
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]
     crosses = np.cross(first, second)
@@ -100,17 +105,17 @@ def _shares(rest: Floats64, fans: Unsigned32, sector: Integers64, weights: Float
     longest = np.maximum(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
     is_proper = areas > SLIVER_SINE * longest**2
     totals = _sums(sector, np.where(is_proper, areas, 0.0)[:, None], count)[:, 0]
-    share_of = np.where(is_proper, areas / np.maximum(totals[sector], 1e-300), 0.0)
+    area_fraction = np.where(is_proper, areas / np.maximum(totals[sector], 1e-300), 0.0)
     squared = np.where(is_proper, areas, 1.0) ** 2
     # A direction d in the triangle is x first + y second; the dual basis of its edges gives x and
     # y.
     dual_of_first = np.cross(second, crosses) / squared[:, None]
     dual_of_second = np.cross(crosses, first) / squared[:, None]
-    shares = [weights]
+    contributions = [weights]
     for direction in (across, np.cross(normals, across)):
         for dual in (dual_of_first, dual_of_second):
-            shares.append(share_of * np.einsum("ki,ki->k", dual, direction[sector]))
-    return np.stack(shares, axis=1)
+            contributions.append(area_fraction * np.einsum("ki,ki->k", dual, direction[sector]))
+    return np.stack(contributions, axis=1)
 
 
 def _sums(numbers: Integers64, values: Floats64, count: int) -> Floats64:
@@ -142,11 +147,11 @@ def find_axes(first: int, last: int, positions: Floats64, fans: SectorFans, axes
             v = fans.corners[k, 0]
             u = difference(positions, v, fans.corners[k, 1])
             w = difference(positions, v, fans.corners[k, 2])
-            normal = plus(normal, times(fans.shares[k, 0], cross(u, w)))
-            across = plus(across, times(fans.shares[k, 1], u))
-            across = plus(across, times(fans.shares[k, 2], w))
-            beside = plus(beside, times(fans.shares[k, 3], u))
-            beside = plus(beside, times(fans.shares[k, 4], w))
+            normal = plus(normal, times(fans.contributions[k, 0], cross(u, w)))
+            across = plus(across, times(fans.contributions[k, 1], u))
+            across = plus(across, times(fans.contributions[k, 2], w))
+            beside = plus(beside, times(fans.contributions[k, 3], u))
+            beside = plus(beside, times(fans.contributions[k, 4], w))
         normal = unit_of(normal)
         across = less(across, dot(across, normal), normal)
         beside = less(beside, dot(beside, normal), normal)

@@ -29,7 +29,7 @@ from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...jit import njit
 from ..mesh.borders import follow_borders
 from ..mesh.connectivity import Connectivity
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row
 from .frames import (
     AXES_NUMBERS,
@@ -49,8 +49,8 @@ FRAMES = 3 * POINTS
 WIDTH = FRAMES + 3 * FRAME_NUMBERS
 """Count of the numbers of a patch."""
 MOST_CARRIED = 0.5
-"""Largest difference of a carried tangent from the tangent of the present mesh, in lengths of the
-latter. Chosen: at 1 or more a curve may turn back.
+"""Largest difference between a carried tangent and the tangent of the current mesh, relative to the
+length of the latter. Chosen: at 1 or more a curve may turn back.
 """
 NO_VERTEX = np.uint32(2**32 - 1)
 """Number for no vertex: edges inside the mesh have no border vertices before and after."""
@@ -68,7 +68,7 @@ class Patches(NamedTuple):
     """Sectors of its corners, shape (T, 3)."""
     near: Unsigned32
     """Directed edges from each corner to the next one and to the one before, shape (T, 6)."""
-    ways: Unsigned32
+    directed_edges: Unsigned32
     """For directed edges, shape (D, 5): vertices a and b; the vertices before a and after b on the
     border (at a corner, a or b itself; inside the mesh, NO_VERTEX); the sector at a.
     """
@@ -88,22 +88,22 @@ class SmoothSurface:
         corner_sector = sound_sectors(mesh, rest)
         used, numbers = np.unique(corner_sector[triangles], return_inverse=True)
         self.sectors = numbers.reshape(-1, 3).astype(np.uint32)
-        near, ways = _directed_edges(mesh, rest, triangles, self.sectors)
+        near, directed_edges = _directed_edges(mesh, rest, triangles, self.sectors)
         self._fans = fans_of_sectors(mesh, rest, corner_sector, used)
         self._patches = Patches(
             corners=np.ascontiguousarray(mesh.faces[triangles]),
             sectors=self.sectors,
             near=near,
-            ways=ways,
-            slopes=np.zeros((len(ways), 2)),
+            directed_edges=directed_edges,
+            slopes=np.zeros((len(directed_edges), 2)),
             rest=np.zeros((len(used), AXES_NUMBERS)),
         )
         axes = self._patches.rest
-        share(find_axes, len(used), rest, self._fans, axes)
-        share(find_slopes, len(ways), rest, self._patches)
+        parallel_for(find_axes, len(used), rest, self._fans, axes)
+        parallel_for(find_slopes, len(directed_edges), rest, self._patches)
         self._axes = axes.copy()
         self._frames = np.zeros((len(used), FRAME_NUMBERS))
-        self._tangents = np.zeros((len(ways), 3))
+        self._tangents = np.zeros((len(directed_edges), 3))
         self.rows = np.zeros((len(triangles), WIDTH))
         """Control points and frames of each patch, shape (T, 45)."""
         self.move(rest)
@@ -116,17 +116,19 @@ class SmoothSurface:
     def move(self, positions: Floats64) -> None:
         """Compute the patches over `positions`, shape (V, 3)."""
         patches = self._patches
-        share(find_axes, len(self._axes), positions, self._fans, self._axes)
-        share(find_frames, len(self._axes), patches.rest, self._axes, self._frames)
-        share(find_tangents, len(self._tangents), positions, patches, self._axes, self._tangents)
+        parallel_for(find_axes, len(self._axes), positions, self._fans, self._axes)
+        parallel_for(find_frames, len(self._axes), patches.rest, self._axes, self._frames)
+        parallel_for(
+            find_tangents, len(self._tangents), positions, patches, self._axes, self._tangents
+        )
         given = patches, self._tangents, self._frames
-        share(write_patches, len(self.rows), positions, *given, self.rows)
+        parallel_for(write_patches, len(self.rows), positions, *given, self.rows)
 
 
 def _directed_edges(
     mesh: Connectivity, rest: Floats64, triangles: Integers64, sectors: Unsigned32
 ) -> tuple[Unsigned32, Unsigned32]:
-    """`Patches.near` and `Patches.ways` of some triangles, whose corners have `sectors`."""
+    """Fields `near` and `directed_edges` of the patches over `triangles`; `sectors`: (T, 3)."""
     borders = follow_borders(mesh, rest)
     faces = mesh.faces[triangles]
     names = np.zeros((len(triangles), 6), dtype=np.int64)
@@ -143,15 +145,15 @@ def _directed_edges(
     after = np.where(is_interior, NO_VERTEX, borders[edge, 1 - end])
     there = mesh.edges[edge, 1 - end]
     sector = np.repeat(sectors, 2, axis=1).ravel()[first]
-    ways = np.stack([mesh.edges[edge, end], there, before, after, sector], axis=1)
-    return near.reshape(-1, 6).astype(np.uint32), ways.astype(np.uint32)
+    directed_edges = np.stack([mesh.edges[edge, end], there, before, after, sector], axis=1)
+    return near.reshape(-1, 6).astype(np.uint32), directed_edges.astype(np.uint32)
 
 
 @njit
 def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None:
     """Write `patches.slopes` from the axes at rest."""
     for k in range(first, last):
-        a, b, before, after, s = patches.ways[k]
+        a, b, before, after, s = patches.directed_edges[k]
         if before != NO_VERTEX:
             patches.slopes[k, 0] = share_of_chord(rest, before, a, b)
             patches.slopes[k, 1] = share_of_chord(rest, after, b, a)
@@ -205,13 +207,15 @@ def find_tangents(
 ) -> None:
     """Write a third of the tangents of directed edges, shape (D, 3)."""
     for k in range(first, last):
-        a, b, before, after, s = patches.ways[k]
+        a, b, before, after, s = patches.directed_edges[k]
         along = patches.slopes[k, 0]
         if before != NO_VERTEX:
             at_a = share_of_chord(positions, before, a, b)
             at_b = share_of_chord(positions, after, b, a)
-            now = border_tangent(positions, patches.ways[k], at_a, at_b)
-            carried = border_tangent(positions, patches.ways[k], along, patches.slopes[k, 1])
+            now = border_tangent(positions, patches.directed_edges[k], at_a, at_b)
+            carried = border_tangent(
+                positions, patches.directed_edges[k], along, patches.slopes[k, 1]
+            )
         else:
             d = difference(positions, a, b)
             normal = row_of(axes, s)
@@ -269,7 +273,7 @@ def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
     vv = v * v
     ww = w * w
     x = y = z = 0.0
-    shares = (
+    basis = (
         uu * u,
         vv * v,
         ww * w,
@@ -282,7 +286,7 @@ def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
         6.0 * u * v * w,
     )
     for k in range(POINTS):
-        x += shares[k] * row[3 * k]
-        y += shares[k] * row[3 * k + 1]
-        z += shares[k] * row[3 * k + 2]
+        x += basis[k] * row[3 * k]
+        y += basis[k] * row[3 * k + 1]
+        z += basis[k] * row[3 * k + 2]
     return x, y, z

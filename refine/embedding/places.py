@@ -1,4 +1,4 @@
-"""Places of a fine mesh on the smooth surface of a coarse one, at rest.
+"""The points of a smooth surface at rest to which the vertices of a fine mesh are bound.
 
 The search begins with the nearest place on the flat triangles. From there the place p moves over
 the surface until the fine point x lies on the interpolated normal: x = p + h n, with p on the cubic
@@ -17,7 +17,7 @@ from ...geometry.closest import closest_points
 from ...geometry.normals import cross_products
 from ...jit import njit
 from ..mesh.connectivity import Connectivity
-from ..mesh.threads import share
+from ..mesh.threads import parallel_for
 from ..mesh.vectors import Vector, dot, less, plus, row_of, times
 from .frames import unit_of
 from .patches import SmoothSurface, place_on
@@ -32,7 +32,7 @@ with the point on its normal is rarely the nearest place, but a place much farth
 another part of the surface.
 """
 ROUNDING = 1e-14
-"""A step in barycentric coordinates, or the square of an angle's sine, that counts as zero."""
+"""Steps in barycentric coordinates, and squared sines of angles, below this count as zero."""
 INSIDE, STUCK = 3, 4
 """Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
 UPRIGHT = 1e-12
@@ -55,8 +55,8 @@ def nearest_places(
     edges = rest[faces[:, [1, 2, 0]]] - rest[faces]
     away = WRONG_SIDE * float(np.linalg.norm(edges, axis=2).mean())
     for members, allowed in groups:
-        ways = None if normals is None else normals[members]
-        found = closest_points(points[members], rest, faces[allowed], ways, away)
+        directions = None if normals is None else normals[members]
+        found = closest_points(points[members], rest, faces[allowed], directions, away)
         triangles[members] = allowed[found.triangles]
         weights[members] = found.weights
     return triangles, weights
@@ -71,7 +71,7 @@ def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
 
 
 def across_edges(mesh: Connectivity, label: Integers64) -> Integers64:
-    """Return the neighbour's side at each side of triangles, 4 x triangle + i, (F, 3); -1 for none.
+    """Return the other side of each edge of triangles, 4 x triangle + i, (F, 3); -1 for none.
 
     Only edges inside the mesh count, between triangles with the same `label`, shape (F,); -1: no
     label.
@@ -96,7 +96,7 @@ def settle(
 ) -> None:
     """Move places, (N,) and (N, 3), until points, shape (N, 3), lie on their normals."""
     given = surface.rows, surface.normals, surface.sectors, across
-    share(slide, len(points), points, *given, triangles, weights)
+    parallel_for(slide, len(points), points, *given, triangles, weights)
 
 
 @njit

@@ -219,8 +219,8 @@ class Coherent(Cutting):
     def states(self) -> Unsigned16:
         """The sequence of each triangle, (F,), read only: the only state between frames.
 
-        It may be set to that of another refiner of the same mesh, to go on from there. Raises
-        ValueError for other shapes and for numbers without a sequence.
+        It may be set to the states of another refiner of the same mesh, to continue its sequences.
+        Raises ValueError for other shapes and for numbers without a sequence.
         """
         return self._shown
 

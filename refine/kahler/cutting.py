@@ -14,7 +14,7 @@ from .table import CONFIGURATIONS, Patterns
 
 
 class Cutting:
-    """The paper's way: every point has its final position, and the table has 27 patterns.
+    """The paper's cutting: every point has its final position, and the table has 27 patterns.
 
     A refiner calls `bind` once, then in every frame `mark`, `number` and `place`. One object serves
     one refiner.

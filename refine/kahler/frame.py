@@ -19,7 +19,7 @@ from ..mesh.connectivity import Connectivity
 
 ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
 """Places in `FrameBuffers.counts`: output rows without centres, split edges, edges split twice,
-subtriangles, triangles with a point in the middle.
+subtriangles, triangles with a centre.
 """
 
 
@@ -37,8 +37,8 @@ class FrameBuffers(NamedTuple):
     stands for no edge.
     """
     geomorph_once: Floats32
-    """Geomorph weight of an edge's middle point: its distance from the straight edge relative to
-    the final distance, (E,).
+    """Geomorph weight of an edge's first-level point: its distance from the straight edge relative
+    to the final distance, (E,).
 
     All are 1 unless frames are blended (beyond/blending.py); entries without a point have no
     meaning.
@@ -58,11 +58,11 @@ class FrameBuffers(NamedTuple):
     configurations: Unsigned16
     """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
     centre_triangles: Unsigned32
-    """The triangles with a point in the middle, which only blending has; the first
+    """The triangles with a centre, which only blending has; the first
     `counts[CENTRES]` are valid. Shape (F + 1,).
     """
     centre_weights: Floats32
-    """Place of each point in the middle of a triangle: weights of the corners, shape (F + 1, 3)."""
+    """Position of each centre in its triangle: weights of the corners, shape (F + 1, 3)."""
     counts: Integers64
     """Counts, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats32
@@ -80,7 +80,7 @@ class FrameBuffers(NamedTuple):
 
     @property
     def centre_count(self) -> int:
-        """Number of triangles with a point in the middle."""
+        """Number of triangles with a centre."""
         return int(self.counts[CENTRES])
 
 

@@ -28,7 +28,7 @@ from .frame import FrameBuffers
 
 
 class KeptRows(NamedTuple):
-    """The rows of the matrix, for V vertices and the N middles of split edges."""
+    """The rows of the matrix, for V vertices and the N edge points of split edges."""
 
     points: Floats32
     """Positions of a frame in lanes (mesh/lanes.py), shape (V, 4)."""
@@ -45,7 +45,7 @@ class KeptRows(NamedTuple):
     corners: Unsigned32
     """Ends of a split edge and the corners opposite, shape (N, 4); edges inside the mesh first."""
     rows: Unsigned32
-    """Output row of each middle, shape (N,)."""
+    """Output row of each edge point, shape (N,)."""
     edges: Unsigned32
     """The split edges, shape (N,)."""
 
@@ -113,7 +113,7 @@ def place_crowded_vertices(kept: KeptRows, rings: Rings, rows: Floats32) -> None
 
 
 @njit(lanes=True)
-def place_kept_middles(
+def place_kept_edge_points(
     first: int,
     last: int,
     kept: KeptRows,
@@ -128,7 +128,7 @@ def place_kept_middles(
     points = kept.points
     normals = kept.normals
     corners = kept.corners
-    places = kept.rows
+    output_rows = kept.rows
     assert points.shape[1] == normals.shape[1] == corners.shape[1] == LANE_COUNT
     left_count = 0
     for k in range(first, last):
@@ -137,10 +137,10 @@ def place_kept_middles(
         b = corners[i, 1]
         ends = sum_of(lanes_of(points, a), lanes_of(points, b))
         wings = sum_of(lanes_of(points, corners[i, 2]), lanes_of(points, corners[i, 3]))
-        middle = sum_of(scaled(of_ends, ends), scaled(of_wings, wings))
+        edge_point = sum_of(scaled(of_ends, ends), scaled(of_wings, wings))
         total = sum_of(lanes_of(normals, a), lanes_of(normals, b))
         squared = total[0] * total[0] + total[1] * total[1] + total[2] * total[2]
-        write_point(rows, places[i], middle, unit_of_held(total, squared))
+        write_point(rows, output_rows[i], edge_point, unit_of_held(total, squared))
         left_count += not is_held(squared)
     if left_count > 0:  # normals that look in opposite directions
         for k in range(first, last):
@@ -148,11 +148,11 @@ def place_kept_middles(
             a = corners[i, 0]
             b = corners[i, 1]
             mean = unit(plus(row_of(normals, a), row_of(normals, b)))
-            write_row(rows, places[i], mean, 3)
+            write_row(rows, output_rows[i], mean, 3)
 
 
 @njit
-def keep_middles(kept: KeptRows, rows: Floats32, middles: Floats32) -> None:
-    """Copy first-level points, before the second level moves them, into `middles`, shape (E, 3)."""
+def keep_edge_points(kept: KeptRows, rows: Floats32, edge_points: Floats32) -> None:
+    """Copy first-level points into `edge_points`, (E, 3), before the second level moves them."""
     for k in range(len(kept.edges)):
-        write_row(middles, kept.edges[k], row_of(rows, kept.rows[k]))
+        write_row(edge_points, kept.edges[k], row_of(rows, kept.rows[k]))

@@ -244,7 +244,7 @@ class Kahler(BaseRefiner):
     def _origins_among(
         self, of_wedges: npt.NDArray[np.integer], of_ends: npt.NDArray[np.integer]
     ) -> Origins:
-        """The origins for numbers of wedges, (W,), and of ends of attribute edges, (R, 2)."""
+        """The origins, given indices of wedges, (W,), and of ends of attribute edges, (R, 2)."""
         frame = self._frame
         splits = self.edge_splits[self.connectivity.attribute_edges]
         origins = Origins.at(of_wedges).followed_by(*points_on_edges(of_ends, splits))

@@ -22,7 +22,7 @@ class Scheme:
     interpolates = False
     """Whether the original vertices stay where they are."""
     uses_normals = True
-    """Whether the scheme reads normals of frames; they are computed only if a part reads them."""
+    """Whether the scheme reads normals of frames; they are computed only if needed."""
     measures = False
     """Whether the scheme defines `measure`, which the criterion `displacement` needs."""
     parts: tuple["Scheme", ...] = ()
@@ -52,14 +52,14 @@ class Scheme:
         self.place(frame)
 
     def place_centres(self, frame: FrameBuffers) -> None:
-        """Correct the points in the middle of triangles, after blending has written them."""
+        """Correct the centres of triangles, after blending has written them."""
 
     def outlined(self, connectivity: Connectivity) -> Flags:
         """Flags of interior edges that are outlines like borders, shape (E,); by default none."""
         return np.zeros(len(connectivity.edges), np.bool_)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
-        """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
+        """Write how far a split would move each edge's midpoint and turn its normal, (E,) each.
 
         The turn is an angle [rad] times the length of the edge. The criterion `displacement` reads
         both.

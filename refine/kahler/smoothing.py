@@ -11,7 +11,7 @@ is computed.
              \   /
               1/8
 
-    second level: o halves the half-edge a'm; then the middle point m itself is moved
+    second level: o halves the half-edge a'm; then the edge point m itself is moved
 
             c                quarter point, interior edge   o = 3/8 (a' + m) + 1/8 (p + r)
            / \               quarter point, border edge     o = 1/2 (a' + m)
@@ -49,7 +49,7 @@ from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
 from ...jit import njit
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.rings import NEAR_COUNT, Rings, vertex_rings
-from ..mesh.threads import share, threads_for
+from ..mesh.threads import parallel_for, threads_for
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -67,10 +67,10 @@ from .frame import ONCE, TWICE, FrameBuffers
 from .kept_splits import (
     KeptRows,
     copy_frame,
-    keep_middles,
+    keep_edge_points,
     kept_rows,
     place_crowded_vertices,
-    place_kept_middles,
+    place_kept_edge_points,
     place_kept_vertices,
 )
 from .scheme import Scheme
@@ -101,7 +101,7 @@ class LoopScheme(Scheme):
         self._around = connectivity.around
         self._rings = vertex_rings(connectivity)
         self._vertex_geomorph = np.zeros(connectivity.vertex_count, dtype=np.float32)
-        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        self._edge_points = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
         self._frame: FrameBuffers | None = None
         self._kept: KeptRows | None = None
 
@@ -125,35 +125,37 @@ class LoopScheme(Scheme):
             self._frame = frame
             self._tuples = frame[:], self._around[:], self._rings[:]  # plain: sooner handed over
         if self._kept is not None:
-            place_kept(*self._tuples, self._kept[:], self._inside_count, self._middles)
+            place_kept(*self._tuples, self._kept[:], self._inside_count, self._edge_points)
             return
-        place_by_loop(*self._tuples, self._vertex_geomorph, self._middles)
+        place_by_loop(*self._tuples, self._vertex_geomorph, self._edge_points)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
         """Do the same in loops shared among threads, with results equal to the last bit."""
         around = self._around
-        middles = self._middles
+        edge_points = self._edge_points
         geomorph = self._vertex_geomorph
         edges = frame.split_edges
         geomorph_vertices(around.points, edges, frame.geomorph_once, geomorph)
-        share(place_vertices, len(frame.points), frame, self._rings, geomorph)
-        share(place_middles, len(edges), frame, around, middles)
-        share(place_quarters, len(frame.twice_split_edges), frame, around, middles)
+        parallel_for(place_vertices, len(frame.points), frame, self._rings, geomorph)
+        parallel_for(place_edge_points, len(edges), frame, around, edge_points)
+        parallel_for(place_quarters, len(frame.twice_split_edges), frame, around, edge_points)
 
     def _place_kept(self, frame: FrameBuffers, kept: KeptRows) -> None:
         """Do the same for frames with the same splits."""
         rows = frame.rows
         vertex_count = len(frame.points)
-        share(copy_frame, vertex_count, frame, kept)
-        share(place_kept_vertices, vertex_count, kept, rows)
+        parallel_for(copy_frame, vertex_count, frame, kept)
+        parallel_for(place_kept_vertices, vertex_count, kept, rows)
         place_crowded_vertices(kept, self._rings, rows)
         inside_count = self._inside_count
-        share(place_kept_middles, inside_count, kept, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
-        place_kept_middles(inside_count, len(kept.edges), kept, BORDER_END_WEIGHT, ZERO, rows)
+        parallel_for(
+            place_kept_edge_points, inside_count, kept, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows
+        )
+        place_kept_edge_points(inside_count, len(kept.edges), kept, BORDER_END_WEIGHT, ZERO, rows)
         twice_count = len(frame.twice_split_edges)
         if twice_count > 0:
-            keep_middles(kept, rows, self._middles)
-            share(place_quarters, twice_count, frame, self._around, self._middles)
+            keep_edge_points(kept, rows, self._edge_points)
+            parallel_for(place_quarters, twice_count, frame, self._around, self._edge_points)
 
 
 @njit
@@ -210,12 +212,12 @@ def place_vertices(
 
 
 @njit
-def place_middles(
-    first: int, last: int, frame: FrameBuffers, around: Surroundings, middles: Floats32
+def place_edge_points(
+    first: int, last: int, frame: FrameBuffers, around: Surroundings, edge_points: Floats32
 ) -> None:
-    """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
+    """Write the first-level point of every split edge (Fig. 3), and keep it in `edge_points`.
 
-    `middles`: points at their final positions, shape (E, 3).
+    `edge_points`: points at their final positions, shape (E, 3).
     """
     points = frame.points
     normals = frame.normals
@@ -229,43 +231,47 @@ def place_middles(
         d = beside[e, 3]
         row = frame.first_points[e] + (frame.splits[e] >> 1)
         ends = plus(row_of(points, a), row_of(points, b))
-        middle = times(BORDER_END_WEIGHT, ends)
+        edge_point = times(BORDER_END_WEIGHT, ends)
         if c != a:  # an edge inside the mesh
             wings = plus(row_of(points, c), row_of(points, d))
-            middle = plus(times(EDGE_END_WEIGHT, ends), times(EDGE_WING_WEIGHT, wings))
-        write_row(middles, e, middle)
+            edge_point = plus(times(EDGE_END_WEIGHT, ends), times(EDGE_WING_WEIGHT, wings))
+        write_row(edge_points, e, edge_point)
         if geomorph[e] < ONE:
             straight = times(HALF, plus(row_of(rows, a), row_of(rows, b)))
-            middle = mix(straight, middle, geomorph[e])
-        write_row(rows, row, middle)
+            edge_point = mix(straight, edge_point, geomorph[e])
+        write_row(rows, row, edge_point)
         normal = unit(plus(row_of(normals, a), row_of(normals, b)))
         write_row(rows, row, normal, 3)
 
 
 @njit
 def wing(
-    points: Floats32, middles: Floats32, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
+    points: Floats32,
+    edge_points: Floats32,
+    ends: tuple[int, int],
+    e: np.uint32,
+    geomorph: np.float32,
 ) -> Vector:
     """Return the first-level point of a neighbour edge at its current geomorph weight."""
     start = row_of(points, ends[0])
     end = row_of(points, ends[1])
     straight = times(HALF, plus(start, end))
-    return mix(straight, row_of(middles, e), geomorph)
+    return mix(straight, row_of(edge_points, e), geomorph)
 
 
 @njit
 def geomorph_of_split(splits: Unsigned8, geomorph: Floats32, e: np.uint32) -> np.float32:
-    """Return the geomorph weight of the middle of an edge; 0 if the edge is not split."""
+    """Return the geomorph weight of the midpoint of an edge; 0 if the edge is not split."""
     return geomorph[e] if splits[e] > 0 else ZERO
 
 
 @njit
 def place_quarters(
-    first: int, last: int, frame: FrameBuffers, around: Surroundings, middles: Floats32
+    first: int, last: int, frame: FrameBuffers, around: Surroundings, edge_points: Floats32
 ) -> None:
-    """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4).
+    """Write the quarter points of every edge that is split twice, and move its edge point (Fig. 4).
 
-    `middles`: as `place_middles` left them.
+    `edge_points`: as `place_edge_points` left them.
     """
     points = frame.points
     rows = frame.rows
@@ -281,7 +287,7 @@ def place_quarters(
         b = beside[e, 1]
         c = beside[e, 2]
         d = beside[e, 3]
-        m = row_of(middles, e)
+        m = row_of(edge_points, e)
         moved_a = row_of(rows, a)
         moved_b = row_of(rows, b)
         ends_a = plus(moved_a, m)
@@ -292,23 +298,23 @@ def place_quarters(
             bc = wings[e, 1]
             ad = wings[e, 2]
             bd = wings[e, 3]
-            p = wing(points, middles, (a, c), ac, geomorph_of_split(splits, once, ac))
-            q = wing(points, middles, (b, c), bc, geomorph_of_split(splits, once, bc))
-            r = wing(points, middles, (a, d), ad, geomorph_of_split(splits, once, ad))
-            s = wing(points, middles, (b, d), bd, geomorph_of_split(splits, once, bd))
+            p = wing(points, edge_points, (a, c), ac, geomorph_of_split(splits, once, ac))
+            q = wing(points, edge_points, (b, c), bc, geomorph_of_split(splits, once, bc))
+            r = wing(points, edge_points, (a, d), ad, geomorph_of_split(splits, once, ad))
+            s = wing(points, edge_points, (b, d), bd, geomorph_of_split(splits, once, bd))
             wings_a = plus(p, r)
             wings_b = plus(q, s)
             ring = plus(moved, plus(wings_a, wings_b))
             beside_a = plus(times(EDGE_END_WEIGHT, ends_a), times(EDGE_WING_WEIGHT, wings_a))
             beside_b = plus(times(EDGE_END_WEIGHT, ends_b), times(EDGE_WING_WEIGHT, wings_b))
-            middle = plus(times(MIDDLE_OWN_WEIGHT, m), times(MIDDLE_RING_WEIGHT, ring))
+            edge_point = plus(times(MIDDLE_OWN_WEIGHT, m), times(MIDDLE_RING_WEIGHT, ring))
         else:
             beside_a = times(BORDER_END_WEIGHT, ends_a)
             beside_b = times(BORDER_END_WEIGHT, ends_b)
-            middle = plus(times(BORDER_OWN_WEIGHT, m), times(BORDER_RING_WEIGHT, moved))
+            edge_point = plus(times(BORDER_OWN_WEIGHT, m), times(BORDER_RING_WEIGHT, moved))
         geomorph = frame.geomorph_twice[e]
         write_row(rows, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
-        write_row(rows, centre, mix(m, middle, geomorph))
+        write_row(rows, centre, mix(m, edge_point, geomorph))
         write_row(rows, near_b, mix(times(HALF, ends_b), beside_b, geomorph))
         write_mean_normal(rows, a, centre, near_a)
         write_mean_normal(rows, b, centre, near_b)
@@ -320,13 +326,13 @@ def place_by_loop(
     around: tuple[Any, ...],
     rings: tuple[Any, ...],
     vertex_geomorph: Floats32,
-    middles: Floats32,
+    edge_points: Floats32,
 ) -> None:
     """Write moved vertices, the first level and the second level of a frame.
 
     This is one kernel, because the overhead of four calls would take longer than their work. The
     plain tuples are `FrameBuffers`, `Surroundings` and `Rings`; `vertex_geomorph`, shape (V,), and
-    `middles`, shape (E, 3), are scratch.
+    `edge_points`, shape (E, 3), are scratch.
     """
     of_frame = FrameBuffers(*frame)
     of_edges = Surroundings(*around)
@@ -334,8 +340,8 @@ def place_by_loop(
     split = of_frame.split_once[: counts[ONCE]]
     geomorph_vertices(of_edges.points, split, of_frame.geomorph_once, vertex_geomorph)
     place_vertices(0, len(of_frame.points), of_frame, Rings(*rings), vertex_geomorph)
-    place_middles(0, counts[ONCE], of_frame, of_edges, middles)
-    place_quarters(0, counts[TWICE], of_frame, of_edges, middles)
+    place_edge_points(0, counts[ONCE], of_frame, of_edges, edge_points)
+    place_quarters(0, counts[TWICE], of_frame, of_edges, edge_points)
 
 
 @njit(lanes=True)
@@ -345,7 +351,7 @@ def place_kept(
     rings: tuple[Any, ...],
     kept: tuple[Any, ...],
     inside_count: int,
-    middles: Floats32,
+    edge_points: Floats32,
 ) -> None:
     """Write what `place_by_loop` writes, for fixed splits; `kept`: plain tuple of `KeptRows`."""
     of_frame = FrameBuffers(*frame)
@@ -355,9 +361,9 @@ def place_kept(
     copy_frame(0, vertex_count, of_frame, matrix)
     place_kept_vertices(0, vertex_count, matrix, rows)
     place_crowded_vertices(matrix, Rings(*rings), rows)
-    place_kept_middles(0, inside_count, matrix, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
-    place_kept_middles(inside_count, len(matrix.edges), matrix, BORDER_END_WEIGHT, ZERO, rows)
+    place_kept_edge_points(0, inside_count, matrix, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
+    place_kept_edge_points(inside_count, len(matrix.edges), matrix, BORDER_END_WEIGHT, ZERO, rows)
     twice_count = of_frame.counts[TWICE]
     if twice_count > 0:
-        keep_middles(matrix, rows, middles)
-        place_quarters(0, twice_count, of_frame, Surroundings(*around), middles)
+        keep_edge_points(matrix, rows, edge_points)
+        place_quarters(0, twice_count, of_frame, Surroundings(*around), edge_points)

@@ -67,7 +67,7 @@ import numpy as np
 from ...geometry.arrays import Integers64, Unsigned8
 
 CENTRE = 12
-"""Number of a point in the middle of a triangle, which none of the paper's patterns has."""
+"""Number of a centre of a triangle, which none of the paper's patterns has."""
 CONFIGURATION_COUNT = 27
 """Configurations of three edges that are split 0, 1 or 2 times."""
 MOST_SPLITS = 2

@@ -143,10 +143,10 @@ def _ends_on_side(
 ) -> Unsigned32:
     """Sectors at the ends a, b of some edges, (N, 2), on given sides, 4 x triangle + i, (N,)."""
     triangles = (sides >> 2).astype(np.int64)
-    places = (sides & 3).astype(np.int64)
-    start = corners[triangles, places]
-    end = corners[triangles, (places + 1) % 3]
-    runs_along = mesh.faces[triangles, places] == mesh.edges[edges, 0]
+    corner = (sides & 3).astype(np.int64)
+    start = corners[triangles, corner]
+    end = corners[triangles, (corner + 1) % 3]
+    runs_along = mesh.faces[triangles, corner] == mesh.edges[edges, 0]
     first = np.where(runs_along, start, end)
     last = np.where(runs_along, end, start)
     return np.stack([first, last], axis=1)

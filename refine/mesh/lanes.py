@@ -43,9 +43,9 @@ def sum_of(u: Lanes, v: Lanes) -> Lanes:
 
 
 @njit(lanes=True)
-def scaled(share: np.float32, v: Lanes) -> Lanes:
+def scaled(factor: np.float32, v: Lanes) -> Lanes:
     """Product of a vector and a number."""
-    return share * v[0], share * v[1], share * v[2], share * v[3]
+    return factor * v[0], factor * v[1], factor * v[2], factor * v[3]
 
 
 @njit(lanes=True)

@@ -127,9 +127,9 @@ def number_places(points: Floats64, distance: float) -> Integers64:
     Points are at the same place if they are at most `distance` apart, or if a chain of such points
     joins them.
     """
-    places, numbers = np.unique(points, axis=0, return_inverse=True)
-    pairs = _near_pairs(places, distance) if distance > 0.0 and len(places) > 0 else None
-    joined = np.arange(len(places))
+    positions, numbers = np.unique(points, axis=0, return_inverse=True)
+    pairs = _near_pairs(positions, distance) if distance > 0.0 and len(positions) > 0 else None
+    joined = np.arange(len(positions))
     while pairs is not None:
         before = joined.copy()
         lowest = joined[pairs].min(axis=1)
@@ -140,15 +140,15 @@ def number_places(points: Floats64, distance: float) -> Integers64:
     return np.asarray(joined[numbers.reshape(-1)], dtype=np.int64)
 
 
-def _near_pairs(places: Floats64, distance: float) -> Integers64:
+def _near_pairs(positions: Floats64, distance: float) -> Integers64:
     """Return pairs of different places not farther apart than `distance`, shape (P, 2).
 
     Places are sorted into cubes, some times larger than the distance. A place within this distance
     of a cube's side is also sorted into the next cube.
     """
-    lowest = places.min(axis=0)
-    side = max(4.0 * distance, 1e-6 * size_of(places))  # a number of 64 bits must name any cube
-    cubes = [np.floor((places - lowest + away) / side) + 1 for away in (-distance, distance)]
+    lowest = positions.min(axis=0)
+    side = max(4.0 * distance, 1e-6 * size_of(positions))  # a number of 64 bits must name any cube
+    cubes = [np.floor((positions - lowest + away) / side) + 1 for away in (-distance, distance)]
     keys = []
     members = []
     for corner in itertools.product((0, 1), repeat=3):
@@ -168,7 +168,7 @@ def _near_pairs(places: Floats64, distance: float) -> Integers64:
         here = here[here + step < len(key)]
         here = here[key[here] == key[here + step]]
         pair = np.stack([member[here], member[here + step]], axis=1)
-        apart = np.linalg.norm(places[pair[:, 0]] - places[pair[:, 1]], axis=1)
+        apart = np.linalg.norm(positions[pair[:, 0]] - positions[pair[:, 1]], axis=1)
         pairs.append(pair[apart <= distance])
         step += 1
     return np.concatenate(pairs)

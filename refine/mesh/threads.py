@@ -17,7 +17,7 @@ from itertools import pairwise
 ITEMS_OF_PART = 1 << 15
 """Least number of items for which waking a thread is worth its tenth of a millisecond."""
 PARTS_OF_THREAD = 4
-"""Parts of a thread's share of the work, so that a slow thread delays the others only a little."""
+"""Parts of the work of each thread: many, so that a slow thread delays the others only a little."""
 
 THREAD_COUNT = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
     len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -27,8 +27,8 @@ THREAD_COUNT = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
 _pool: ThreadPoolExecutor | None = None
 
 
-def share(kernel: Callable[..., object], count: int, *arguments: object) -> None:
-    """Call kernel(first, last, *arguments) for parts that together cover `count` items."""
+def parallel_for(kernel: Callable[..., object], count: int, *arguments: object) -> None:
+    """Call kernel(first, last, *arguments) in threads, for parts that cover `count` items."""
     threads = threads_for(count)
     if threads == 1:
         kernel(0, count, *arguments)

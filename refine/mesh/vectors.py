@@ -46,23 +46,23 @@ def plus(u: Vector, v: Vector) -> Vector:
 
 
 @njit
-def less(u: Vector, share: Any, v: Vector) -> Vector:
-    """Return vector u minus `share` times v."""
-    return u[0] - share * v[0], u[1] - share * v[1], u[2] - share * v[2]
+def less(u: Vector, factor: Any, v: Vector) -> Vector:
+    """Return vector u minus `factor` times v."""
+    return u[0] - factor * v[0], u[1] - factor * v[1], u[2] - factor * v[2]
 
 
 @njit
-def times(share: Any, v: Vector) -> Vector:
+def times(factor: Any, v: Vector) -> Vector:
     """Product of a number and a vector."""
-    return share * v[0], share * v[1], share * v[2]
+    return factor * v[0], factor * v[1], factor * v[2]
 
 
 @njit
-def mix(start: Vector, end: Vector, share: Any) -> Vector:
-    """Interpolate linearly from start (share 0) to end (share 1); exact at both."""
-    if share == ONE:  # without blending, points are always at their final positions
+def mix(start: Vector, end: Vector, fraction: Any) -> Vector:
+    """Interpolate linearly from start (fraction 0) to end (fraction 1); exact at both."""
+    if fraction == ONE:  # without blending, points are always at their final positions
         return end
-    return plus(times(ONE - share, start), times(share, end))
+    return plus(times(ONE - fraction, start), times(fraction, end))
 
 
 @njit

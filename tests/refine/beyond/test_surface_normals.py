@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 
 from risorius import refine
 from risorius.refine.beyond import whole_surface
-from risorius.refine.mesh.threads import share
+from risorius.refine.mesh.threads import parallel_for
 from tests import meshes
 from tests.refine.cases import (
     SOME_PLACES,
@@ -58,9 +58,9 @@ def test_edges_have_normals_where_they_are_needed(scheme, monkeypatch):
 
     def counted(kernel, count, *arguments):
         found.append((kernel.__name__, count))
-        share(kernel, count, *arguments)
+        parallel_for(kernel, count, *arguments)
 
-    monkeypatch.setattr(whole_surface, "share", counted)
+    monkeypatch.setattr(whole_surface, "parallel_for", counted)
     mesh = meshes.irregular(4)
     quiet = bound(mesh, scheme, "normal")
     measured = bound(mesh, scheme, ["normal", refine.Displacement(levels=0)])
