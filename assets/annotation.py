@@ -1,6 +1,6 @@
-"""The places where annotators of photographs put the 68 points of iBug on a head.
+"""The points of a head that annotators of photographs mark as the 68 points of iBug.
 
-The rig has its own 68 landmarks, at places that muscles need (`Head.landmarks`). Landmarks of a
+The rig has its own 68 landmarks, at points that muscles need (`Head.landmarks`). Landmarks of a
 picture lie on visible borders: on the edges of the lids and of the red of the lips, and on the
 painted brow. A jaw has no such border: its points lie on the outline of the face, which is a
 different line on the skin for every camera.
@@ -38,11 +38,11 @@ STEPS = 25  # places along each of them
 
 @dataclass(frozen=True, eq=False)
 class Annotation:
-    """Places on the skin of one head; see the module.
+    """The points that annotators mark, on the skin of one head.
 
-    inner: places of the points 17 to 67, in their order. lanes: places along the paths on which the
-    outline is searched: LANES paths of STEPS places on the right side, then as many on the left.
-    Each path runs from the cheek outward.
+    inner: surface points of the landmarks 17 to 67, in their order. lanes: surface points of the
+    paths on which the outline is searched: LANES paths of STEPS points on the right side, then as
+    many on the left. Each path runs from the cheek outward.
     """
 
     inner: SurfacePoints
@@ -56,8 +56,8 @@ class Annotation:
         """Return the points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
         return self.inner.interpolate(positions)
 
-    def ways(self, positions: Floats64) -> Floats64:
-        """Paths of the outline on a skin with vertices (V, 3), shape (2, LANES, STEPS, 3)."""
+    def outline_paths(self, positions: Floats64) -> Floats64:
+        """Paths on which the outline is searched, (2, LANES, STEPS, 3), on a skin, (V, 3)."""
         return self.lanes.interpolate(positions).reshape(2, LANES, STEPS, 3)
 
 
@@ -72,15 +72,15 @@ def annotation_of(head: Head | FittedHead) -> Annotation:
     known = load("head")
     warp = ThinPlateSpline(known.vertices[known.landmarks], head.vertices[head.landmarks])
     lanes = _of_built_in()[1]
-    places = warp.points(lanes.interpolate(known.vertices))
-    ways = lanes.interpolate(vertex_normals(known.vertices, known.faces))
+    targets = warp.points(lanes.interpolate(known.vertices))
+    normals = lanes.interpolate(vertex_normals(known.vertices, known.faces))
     marked = _vertices(head.landmarks[FIRST_INNER:])
-    return Annotation(marked, nearest_on(places, ways, head.vertices, head.faces))
+    return Annotation(marked, nearest_on(targets, normals, head.vertices, head.faces))
 
 
 @lru_cache(maxsize=1)
 def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
-    """Return the places of points and lanes on the triangles that all persons share."""
+    """Return points and lanes on the triangles that all persons have."""
     table = read_toml(Path(__file__).with_name("annotation.toml"))
     known = load("head")
     uv = known.uv[known.landmarks[FIRST_INNER:]].astype(np.float64)
@@ -91,10 +91,10 @@ def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
         uv[number - FIRST_INNER] = place
         uv[other - FIRST_INNER] = place if other == number else _mirror_image(np.array(place))
     ends = [_evenly(np.array(table["outline"][name]), LANES) for name in ("inner", "outer")]
-    share = np.linspace(0.0, 1.0, STEPS)[:, None]
-    left = ends[0][:, None] + share * (ends[1] - ends[0])[:, None]
+    fraction = np.linspace(0.0, 1.0, STEPS)[:, None]
+    left = ends[0][:, None] + fraction * (ends[1] - ends[0])[:, None]
     lanes = np.stack([_mirror_image(left), left])
-    return places_on_texture(uv), places_on_texture(lanes.reshape(-1, 2))
+    return points_on_texture(uv), points_on_texture(lanes.reshape(-1, 2))
 
 
 def _mirror_image(uv: Floats64) -> Floats64:
@@ -106,8 +106,8 @@ def _evenly(corners: Floats64, count: int) -> Floats64:
     return evenly_spaced(corners, np.arange(float(len(corners))), count)
 
 
-def places_on_texture(uv: Floats64) -> SurfacePoints:
-    """The places of the built-in head's skin that texture coordinates (n, 2) show."""
+def points_on_texture(uv: Floats64) -> SurfacePoints:
+    """The surface points of the built-in head's skin at texture coordinates (n, 2)."""
     return _texture().closest(np.hstack([uv, np.zeros((len(uv), 1))]))
 
 
@@ -120,7 +120,7 @@ def _texture() -> MeshSearch:
 
 
 def _vertices(numbers: Integers32) -> SurfacePoints:
-    """Vertices as places on the surface."""
+    """Vertices as points on the surface."""
     count = len(numbers)
     weights = np.tile([1.0, 0.0, 0.0], (count, 1))
     corners = np.repeat(numbers[:, None], 3, axis=1)
@@ -138,7 +138,7 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
             continue
         size = np.array(head.segments.shape)[::-1]
         pixels = 2.0 * np.column_stack([columns, rows]) + 0.5
-        found = places_on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
+        found = points_on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
         chosen = _along_brow(found.interpolate(head.vertices) * [side, 1.0, 1.0])
         at = np.array(numbers) - FIRST_INNER
         corners[at] = found.corners[chosen]
@@ -146,13 +146,13 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
     return SurfacePoints(points.distances, points.triangles, corners, weights)
 
 
-def _along_brow(places: Floats64) -> Integers32:
-    """Five of the places (n, 3) [mm] of a left brow, from the nose outward, shape (5,).
+def _along_brow(points: Floats64) -> Integers32:
+    """Indices of five of the points (n, 3) [mm] of a left brow, from the nose outward, (5,).
 
-    They are both ends, and three places on the upper edge at equal distances. The tail ends at the
-    place farthest from the inner end, because a tail may turn down there.
+    They are both ends, and three points on the upper edge at equal distances. The tail ends at the
+    point farthest from the inner end, because a tail may turn down there.
     """
-    x, y, _ = places.T
+    x, y, _ = points.T
     strip_width = 1.0  # [mm]
     strip = np.round((x - x.min()) / strip_width).astype(int)
     edge = []
@@ -162,8 +162,8 @@ def _along_brow(places: Floats64) -> Integers32:
             continue
         wanted = np.median(y[inside]) if number == 0 else y[inside].max()
         edge.append(inside[np.abs(y[inside] - wanted).argmin()])
-    edge[-1] = np.linalg.norm(places - places[edge[0]], axis=1).argmax()
-    along = arc_lengths(places[edge])
+    edge[-1] = np.linalg.norm(points - points[edge[0]], axis=1).argmax()
+    along = arc_lengths(points[edge])
     stations = np.linspace(0.0, along[-1], 5)
     nearest = np.abs(along[:, None] - stations).argmin(axis=0)
     return np.asarray(np.array(edge)[nearest], dtype=np.int32)

@@ -27,7 +27,7 @@ LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
 
 @dataclass(frozen=True)
 class CoarseHead(FittedHead):
-    """A head with some vertices of the built-in head. Besides the fields of a fitted head it has:
+    """A head whose vertices are some of the built-in head's. It adds fields to a fitted head:
 
     mandible_weight, jaw_axis, mirror: as in `Head`.
     anatomy: the anatomical points among its vertices, name -> vertex index.
@@ -81,10 +81,10 @@ def coarse_head() -> CoarseHead:
 
 def _behind_lids(known: Head, part: Part) -> Part:
     """Part; an eyeball is made a little smaller, so that straight lid edges do not cut it."""
-    share = 0.95  # of the radius
+    factor = 0.95  # of the radius
     for eye in known.eyes:
         if part.name == f"eyeball_{eye.name}":
-            vertices = eye.centre + share * (part.vertices - eye.centre)
+            vertices = eye.centre + factor * (part.vertices - eye.centre)
             return replace(part, vertices=vertices.astype(np.float32))
     return part
 

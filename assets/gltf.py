@@ -48,11 +48,11 @@ class GltfSurface:
 
 @dataclass(frozen=True)
 class StoredPiece:
-    """One primitive of a mesh in one node: the places of its vertices in the file.
+    """One primitive of a mesh in one node, and where its vertices are in the file.
 
     node, mesh, primitive: their indices; primitives are counted within a mesh. count: number of
     vertices, which follow the vertices of earlier pieces. to_scene: maps displacements of stored
-    places to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: vertex
+    vertices to the scene, a matrix (3, 3) or one for each vertex, (V, 3, 3). triangles: vertex
     indices within the piece, in the file's winding order, shape (F, 3). name: name of the node, or
     of its mesh.
     """
@@ -153,7 +153,7 @@ class _Reader:
         self.painter = GltfPainter(file)
         self._file = file
         self._document = file.document
-        self._worlds = _places(self._document.nodes or [])
+        self._worlds = _node_matrices(self._document.nodes or [])
 
     def pieces(self) -> Iterator[_Piece]:
         """The pieces of all nodes that the scene shows."""
@@ -204,11 +204,11 @@ class _Reader:
         mixture = np.random.default_rng(0)  # of shapes and bones: no two motions cancel
         targets = [entry(target, "POSITION") for target in primitive.targets or []]
         for place, target in enumerate(targets):
-            share = mixture.uniform(0.5, 1.5)
+            factors = mixture.uniform(0.5, 1.5)
             if target is None:
                 continue
             added = self._file.values(target).astype(np.float64)
-            motion[:, :3] += share * added
+            motion[:, :3] += factors * added
             if place < len(weights) and weights[place]:
                 points = points + weights[place] * added
         node = self._document.nodes[number]
@@ -292,7 +292,7 @@ class _Reader:
 
 
 def _moved(points: Floats64, matrices: Floats64) -> Floats64:
-    """Points (V, 3) moved by a matrix (4, 4), or by one each, (V, 4, 4)."""
+    """Move points (V, 3) by one matrix, (4, 4), or each by its own matrix, (V, 4, 4)."""
     rows = matrices[..., :3, :]
     # Written out, so that equal points stay equal to the last bit at any place in the list.
     along = [rows[..., axis] * points[:, axis, None] for axis in range(3)]
@@ -300,7 +300,7 @@ def _moved(points: Floats64, matrices: Floats64) -> Floats64:
     return moved
 
 
-def _places(nodes: list[Any]) -> list[Floats64]:
+def _node_matrices(nodes: list[Any]) -> list[Floats64]:
     """The matrix of each node to the scene, (4, 4)."""
     parents = {child: number for number, node in enumerate(nodes) for child in node.children or []}
     local = [_local(node) for node in nodes]

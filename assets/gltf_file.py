@@ -1,4 +1,4 @@
-"""Access to a glTF file: its document, the numbers of accessors, the files of pictures.
+"""Access to a glTF file: its document, the values of accessors, the files of pictures.
 
 pygltflib reads the document. The data are in the GLB file itself, in text within the document, or
 in files beside it; gltf_content.py decompresses them. Numbers are returned decoded: normalized
@@ -25,13 +25,13 @@ from .user_files import MOST_VERTICES, named
 
 
 class GltfFile:
-    """One file. If the file is broken, each method may raise any error, not only AssetError.
+    """A glTF file; if it is broken, methods may raise any error, not only AssetError.
 
     document: a pygltflib document, without animations and extras.
     """
 
     def __init__(self, content: bytes, folder: Path) -> None:
-        """content: that of the file. folder: the file's own, which may hold further files of it.
+        """content: bytes of the file. folder: its folder, which may hold files that it names.
 
         Raises AssetError with the names of required extensions that are not supported.
         """
@@ -81,7 +81,7 @@ class GltfFile:
             rows = self._filled_in(rows, accessor.sparse)
         if kind.kind == "f":
             return rows.astype(np.float64)
-        return shares(rows) if accessor.normalized else rows
+        return fractions(rows) if accessor.normalized else rows
 
     def picture(self, number: int) -> tuple[bytes, str]:
         """The content of a picture's file, and its name."""
@@ -94,9 +94,9 @@ class GltfFile:
 
     def _filled_in(self, rows: npt.NDArray[Any], sparse: Any) -> npt.NDArray[Any]:
         """Rows with the replacements of a sparse accessor."""
-        places = sparse.indices
-        kind = np.dtype(COMPONENTS[places.componentType])
-        where = self._rows(places.bufferView, places.byteOffset, kind, (sparse.count, 1))[:, 0]
+        indices = sparse.indices
+        kind = np.dtype(COMPONENTS[indices.componentType])
+        where = self._rows(indices.bufferView, indices.byteOffset, kind, (sparse.count, 1))[:, 0]
         shape = (sparse.count, rows.shape[1])
         filled = rows.copy()
         filled[where] = self._rows(
@@ -142,7 +142,7 @@ def entry(part: Any, name: str) -> Any:
     return part.get(name) if isinstance(part, Mapping) else getattr(part, name, None)
 
 
-def shares(rows: npt.NDArray[Any]) -> Floats64:
+def fractions(rows: npt.NDArray[Any]) -> Floats64:
     """Integers as fractions of their greatest value: 0 to 1, or signed -1 to 1."""
     greatest = np.iinfo(rows.dtype).max
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)

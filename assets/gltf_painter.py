@@ -1,4 +1,4 @@
-"""The paint of primitives in a glTF file: pictures, their places, tints, vertex colours.
+"""The paint of primitives in a glTF file: pictures and their layout, tints, vertex colours.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.8 and 3.9; KHR_texture_transform,
 KHR_materials_pbrSpecularGlossiness, EXT_texture_webp.
@@ -17,7 +17,7 @@ from risorius.geometry.colour import to_screen
 from ..geometry.arrays import Floats64, Unsigned8
 from .data_files import Image
 from .errors import AssetError
-from .gltf_file import GltfFile, entry, shares
+from .gltf_file import GltfFile, entry, fractions
 from .pictures import decoded, tinted
 
 WHITE = (1.0, 1.0, 1.0)
@@ -86,8 +86,8 @@ class GltfPainter:
         if attributes.get("COLOR_0") is None:
             return None
         light = self._file.values(attributes["COLOR_0"])[:, :3]
-        if light.dtype.kind != "f":  # integers are always shares, whatever the file says
-            light = shares(light)
+        if light.dtype.kind != "f":  # integers are always fractions, whatever the file says
+            light = fractions(light)
         screen = np.rint(255.0 * to_screen(np.nan_to_num(light) * factor))
         return screen.astype(np.uint8)
 

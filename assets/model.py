@@ -145,7 +145,7 @@ class Wrinkles:
     - map: (H, W, 4), uint8; row 0 is v = 1. The channels are the slopes of the skin's height along
       u and v (128 is flat), the depth of the furrow, and the blend of the amounts of both slots (0
       is the first, 255 the second).
-    - steepest: slope that the byte 255 means [mm per unit of texture coordinates].
+    - steepest: slope for the byte 255 [mm per unit of texture coordinates].
     - across: for each vertex and slot, the direction at rest in which wrinkling skin shortens; its
       length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
     - resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
@@ -173,7 +173,7 @@ class FineShape(NamedTuple):
     slopes: Image
     """Slopes of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
     steepest: float
-    """Slope of 255 [mm for one unit of the texture coordinates]."""
+    """Slope for the byte 255 [mm per unit of texture coordinates]."""
 
 
 @dataclass(frozen=True)
@@ -253,7 +253,7 @@ class Head:
 
     @property
     def expressions(self) -> Mapping[str, Mapping[str, float]]:
-        """The shares of each expression, without its texts: a pose of action units and muscles."""
+        """Each expression as a pose: values of action units and muscles, without texts."""
         rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
         return {
             name: {key: float(value) for key, value in row.items() if key not in Layer.NOT_SHARES}
@@ -261,7 +261,7 @@ class Head:
         }
 
     def beside(self, ending: str) -> Path:
-        """Return the path of a file beside the head's data file, by the ending of its name."""
+        """Return the path of a file beside the head's data file; ending: the end of its name."""
         return self.file.with_name(self.file.stem + ending)
 
     @cached_property
@@ -299,7 +299,7 @@ class Head:
         return FineShape(slopes, float(arrays["steepest"]))
 
     def finer(self, level: int) -> FineMesh:
-        """Skin with 4 (level 1) or 16 (level 2) triangles for each; arrays are read-only.
+        """The skin, with each triangle cut into 4 (level 1) or 16 (level 2); arrays are read-only.
 
         Every call reads the file. Raises ValueError for another level.
         """

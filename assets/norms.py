@@ -12,7 +12,7 @@ from .data_files import read_toml
 
 @dataclass(frozen=True)
 class Sample:
-    """One sex of a published sample: its mean and deviation [mm]."""
+    """Mean and deviation of one sex in a published sample [mm]."""
 
     mean: float
     deviation: float

@@ -1,4 +1,4 @@
-"""A mesh file with its whole appearance, for conversion to another format.
+"""Read a mesh file with its whole appearance, for conversion to another format.
 
 `read_mesh` omits data that a simulation does not need: the file's normals, texture coordinates
 without a picture, materials, the bytes of pictures.
@@ -21,10 +21,10 @@ from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of,
 
 @dataclass(frozen=True)
 class Material:
-    """The look of a part of a surface.
+    """The appearance of a part of a surface.
 
     picture: the content of its file, and its name; None without a picture.
-    placing: place of the picture in the texture coordinates.
+    placing: position and size of the picture in texture coordinates.
     """
 
     name: str
@@ -86,7 +86,7 @@ def read_painted(path: Path) -> PaintedMesh:
 
 
 def _within(numbers: Integers64, count: int) -> Integers64:
-    """Numbers, with those beyond the last one replaced by -1."""
+    """Replace indices that are not below `count` by -1."""
     return np.where(numbers < count, numbers, -1)
 
 

@@ -30,7 +30,7 @@ LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card
 
 @dataclass(frozen=True)
 class Texture:
-    """Pictures of a mesh, and their places.
+    """Pictures of a mesh, and texture coordinates.
 
     - uv: texture coordinates, v up, shape (U, 2), float32.
     - face_uv: row of `uv` at each corner of triangles, shape (F, 3), int32.

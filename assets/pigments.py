@@ -1,10 +1,10 @@
 """Skin colour from its pigments: melanin and blood absorb light.
 
-Densities add up, and light falls exponentially with their sum. So one description of a face (places
-with more blood, tanned places) is enough for every complexion, and no tone is a tinted copy of
-another. The three spectra are rounded to the red, green and blue of a screen. Source: the idea of
-Tsumura et al. 2003, "Image-based skin color and texture analysis/synthesis by extracting hemoglobin
-and melanin information in the skin"; numbers chosen by eye.
+Densities add up, and light falls exponentially with their sum. So one description of a face
+(regions with more blood, tanned regions) is enough for every complexion, and no tone is a tinted
+copy of another. The three spectra are rounded to the red, green and blue of a screen. Source: the
+idea of Tsumura et al. 2003, "Image-based skin color and texture analysis/synthesis by extracting
+hemoglobin and melanin information in the skin"; numbers chosen by eye.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Small functions of arrays: a rise without a kink, rows of length 1, means of blocks."""
+"""Small functions of arrays: a smooth step, rows of length 1, means of blocks."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ Points = npt.NDArray[np.float64]
 
 
 def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
-    """Rise from 0 at `low` to 1 at `high` without a kink."""
+    """Rise from 0 at `low` to 1 at `high`, with slope 0 at both ends."""
     t = np.clip((values - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
 

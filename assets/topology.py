@@ -98,7 +98,7 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
     """Cut every triangle into four; edge e gets the new vertex `vertex_count` + e.
 
             c           Old vertices keep their indices. The four children of face f are the faces
-           / \\          4 f to 4 f + 3: corner a, corner b, corner c, middle.
+           / \\          4 f to 4 f + 3: at corner a, at b, at c, and the central one.
          ca---bc
          / \\ / \\
         a---ab--b

@@ -36,8 +36,8 @@ def beside(folder: Path, name: str) -> Path:
     relative = PureWindowsPath(name).as_posix()
     path = folder / relative
     if not name.isascii() and not path.exists():
-        ways = [folder / unicodedata.normalize(form, relative) for form in ("NFC", "NFD")]
-        path = next((way for way in ways if way.exists()), path)
+        paths = [folder / unicodedata.normalize(form, relative) for form in ("NFC", "NFD")]
+        path = next((way for way in paths if way.exists()), path)
     is_inside = path.resolve().is_relative_to(folder.resolve())
     if not is_inside or PureWindowsPath(name).is_absolute():
         raise AssetError(f"names the file '{named(name)}'; it must lie in the mesh's folder")

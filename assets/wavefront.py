@@ -1,8 +1,8 @@
-"""Read the surface of a Wavefront OBJ file: points, polygons, and places of its pictures.
+"""Read the surface of a Wavefront OBJ file: points, polygons, and the layout of its pictures.
 
 trimesh's reader counts relative indices from the end of the file, doubles vertices where the
 texture has a seam or the material changes, and opens the files that materials name. Here a vertex
-keeps its number and its neighbours, and no other file is opened.
+keeps its index and its neighbours, and no other file is opened.
 
 Source: Wavefront Technologies, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 Differs from it: free-form surfaces are left out, and so is the weight w of a vertex.
@@ -149,7 +149,7 @@ def _optional(number: int, count: int) -> int:
 
 @dataclass(frozen=True, order=True)
 class Placing:
-    """The place of a picture in texture coordinates.
+    """Position and size of a picture in texture coordinates.
 
     scale, offset: of coordinates along u and v, in this order. is_clamped: whether the picture's
     edge continues beyond it; else the picture repeats.

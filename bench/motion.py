@@ -71,7 +71,7 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     name = other_names.get(name.lower(), name)
     for ways in ([name], [f"{name}Left", f"{name}Right"]):
         shapes = [shape_of(each) or "" for each in ways]
-        if set(shapes) <= set(simulation.controls.tables.shares):
+        if set(shapes) <= set(simulation.controls.tables.weights):
             return shapes
     return []
 

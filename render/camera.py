@@ -98,7 +98,7 @@ class OrbitCamera:
         return replace(self, target=self.target.copy(), scene_centre=self.scene_centre.copy())
 
     def orbit(self, yaw: float, pitch: float = 0.0) -> None:
-        """Move around the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
+        """Turn around the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
         self.yaw = math.remainder(self.yaw + yaw, 360.0)
         self.pitch = min(max(self.pitch + pitch, -_STEEPEST), _STEEPEST)
 
@@ -109,7 +109,7 @@ class OrbitCamera:
         self.target = self.target + height * (right * right_axis + up * up_axis)
 
     def zoom(self, factor: float) -> None:
-        """Make the target `factor` times as large in the frame by stepping closer or back."""
+        """Make the target `factor` times as large in the frame by moving closer or back."""
         if not factor > 0.0:
             raise ValueError(f"zoom factor is {factor}; it must be positive (2 = twice as large)")
         closest = 0.02 * self.scene_radius

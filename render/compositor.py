@@ -34,7 +34,7 @@ class Detail:
 
 
 class Compositor:
-    """A frame of the window's size, into which the scene is copied and panels are drawn.
+    """A framebuffer of the window's size, into which the scene is copied and panels are drawn.
 
     frame: the framebuffer.
     """

@@ -126,12 +126,12 @@ class Skin:
     """The mesh of a frame: the last upload of a stream, with maps and colours.
 
     - maps: textures; they need a stream of at least 8 columns, else ValueError is raised.
-    - values: a number for each triangle that decides its colour (see `ColourBy`), (M,), uint8;
+    - values: a number for each triangle, which decides its colour (see `ColourBy`), (M,), uint8;
       needed unless the style has `ColourBy.NONE`.
-    - fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. Columns 17
-      and 18 of the stream say how; a stream with fewer columns raises ValueError.
-    - mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. A fading neck hides its
-      inner side, but through the lips this side stays visible.
+    - fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. The stream
+      must have columns 17 and 18, which give the fading, else ValueError is raised.
+    - mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. The inner side of a
+      mesh with a fading neck is hidden, except in the mouth.
     """
 
     stream: MeshBuffers

@@ -36,7 +36,7 @@ class LightMap:
         return self.exposed(turn)[0]
 
     def exposed(self, turn: float = 0.0) -> tuple[Light, float]:
-        """Return the result of `light`, and the exposure: the factor on the radiance."""
+        """Return the exposed light (see `light`), and the exposure: the factor on the radiance."""
         rows, columns = self.radiance.shape[:2]
         every = max(rows // 32, 1)  # a resolution of 6 degrees suffices for light
         radiance = self.radiance[: rows // every * every, : columns // every * every]

@@ -166,7 +166,7 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 class PlacedBuffers(NamedTuple):
     """A placed part with its buffers.
 
-    number: surface number of the part, see surface_number.glsl.
+    number: number of the surface, see surface_number.glsl.
     """
 
     buffers: PartBuffers
@@ -174,7 +174,7 @@ class PlacedBuffers(NamedTuple):
     number: int
 
     def as_background(self) -> Self:
-        """Return the part with the background's number, because its edges are already smooth."""
+        """Return the part with the number of the background: its edges are smooth already."""
         return self._replace(number=0)
 
     @property

@@ -1,4 +1,4 @@
-"""Compile GLSL files to programs: each program has one file, and a define chooses the stage.
+"""Compile GLSL files to programs: each program has one file, in which a define chooses the stage.
 
 `#include "name.glsl"` is replaced by the text of that file. A compile error raises GLError with
 file, stage and defines. All files are GLSL 330, so OpenGL 3.3 core (and 4.1 of macOS) can run them.

@@ -35,7 +35,7 @@ from .programs import compile_program, write_uniform
 from .render_target import RenderTarget
 from .sample_mixer import Mixer, SampleMixer
 from .shadow import Shadow, ShadowMap
-from .stream import GpuStream, MeshBuffers, Share, Stream
+from .stream import GpuStream, MeshBuffers, Stream, TriangleGroup
 from .style import ColourBy, Shading, Style
 from .surface import NEWEST_VERSION, Image, Surface
 from .texture import BumpMap
@@ -234,8 +234,8 @@ class Renderer:
         if values is not None:
             values.use(_VALUE_UNIT)
         drawn = [
-            (self._skin_program(frame, view, maps, shadow, fade), share)
-            for share, maps in _shares(frame.skin, style)
+            (self._skin_program(frame, view, maps, shadow, fade), group)
+            for group, maps in _groups(frame.skin, style)
         ]
         if frame.is_opened:
             for program, _ in drawn:
@@ -246,18 +246,18 @@ class Renderer:
             if self.surface.is_software:
                 self._draw_sides(stream, drawn)
                 return
-            for program, share in drawn:
-                stream.draw(program, share)
+            for program, group in drawn:
+                stream.draw(program, group)
 
     def _draw_sides(
-        self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, Share]]
+        self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, TriangleGroup]]
     ) -> None:
         """Draw front faces first; then most back faces are hidden, and software skips them."""
         self._gl.enable(moderngl.CULL_FACE)
         for side in ("back", "front"):
             self._gl.cull_face = side
-            for program, share in drawn:
-                stream.draw(program, share)
+            for program, group in drawn:
+                stream.draw(program, group)
         self._gl.cull_face = "back"
         self._gl.disable(moderngl.CULL_FACE)
 
@@ -386,7 +386,7 @@ def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]
     return kind, opening.defines
 
 
-def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]]:
+def _groups(skin: Skin, style: Style) -> list[tuple[TriangleGroup, dict[BumpMap, float]]]:
     """Return pairs of a share of the triangles, and the maps with which it is drawn.
 
     Triangles that are coloured by values are drawn together, because values have their order.
@@ -394,5 +394,5 @@ def _shares(skin: Skin, style: Style) -> list[tuple[Share, dict[BumpMap, float]]
     maps = skin.shown_maps(style)
     smooth = {each: strength for each, strength in maps.items() if each is not skin.maps.bumps}
     if len(smooth) == len(maps) or style.colour_by is not ColourBy.NONE:
-        return [(Share.ALL, maps)]
-    return [(Share.BUMPED, maps), (Share.SMOOTH, smooth)]
+        return [(TriangleGroup.ALL, maps)]
+    return [(TriangleGroup.BUMPED, maps), (TriangleGroup.SMOOTH, smooth)]

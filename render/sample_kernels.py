@@ -20,7 +20,7 @@ SURFACE = 0
 HAIR = 1
 TRIANGLES = 2  # each triangle counts as a separate surface
 _LEAST_FACING = 0.05  # as in shell_layers.glsl
-_WAYS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # offsets to a pixel and neighbours
+_OFFSETS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # offsets to a pixel and neighbours
 _SKIN = 190  # smallest surface number of skin, see surface_number.glsl
 _DEPTHS = 255.0 * 255.0  # number of steps of a pixel's stored depth
 
@@ -348,9 +348,9 @@ def mix(
         for s in range(len(SAMPLES)):
             best = 2.0
             shown_x, shown_y = x, y
-            for k in range(len(_WAYS)):
-                at_x = min(max(x + _WAYS[k, 0], 0), width - 1)
-                at_y = min(max(y + _WAYS[k, 1], 0), height - 1)
+            for k in range(len(_OFFSETS)):
+                at_x = min(max(x + _OFFSETS[k, 0], 0), width - 1)
+                at_y = min(max(y + _OFFSETS[k, 1], 0), height - 1)
                 known = surfaces[at_y, at_x]
                 off = abs((255.0 * known[1] + known[2]) / _DEPTHS - depths[n, s])
                 if _differ(known[0], seen[n, s]):

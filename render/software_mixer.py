@@ -96,15 +96,15 @@ def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
 
 def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
     """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
-    places = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
-    clip = _moved(places, view.projection)
+    positions = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
+    clip = _moved(positions, view.projection)
     if cut is not None:
         plane = np.array(in_view(cut, view))
         most = SUNK_DEPTH * view.camera.scene_radius
-        beyond = np.clip(places @ plane[:3] + plane[3], 0.0, most)[:, None]
-        sunk = _moved(places + beyond * unit_vectors(places), view.projection)
+        beyond = np.clip(positions @ plane[:3] + plane[3], 0.0, most)[:, None]
+        sunk = _moved(positions + beyond * unit_vectors(positions), view.projection)
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
-    values = np.zeros((len(places), 2))
+    values = np.zeros((len(positions), 2))
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
     return _Surface(clip, values, triangles, SURFACE, part_numbers(placed), False)
 
@@ -117,11 +117,11 @@ def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     place = (np.floor(_MEAN_PLACE * layers - _LOWEST_PLACE + 0.5) + _LOWEST_PLACE) / layers
     model_view = placed.part.transform.T @ view.world_to_view
     outline = placed.part.vertices + (place - _MEAN_PLACE) * striation[:, 2:5]
-    places = _moved(outline, model_view)[:, :3]
+    positions = _moved(outline, model_view)[:, :3]
     normals = unit_vectors(placed.part.normals @ model_view[:3, :3])
-    facing = np.abs((normals * unit_vectors(places)).sum(axis=1))
+    facing = np.abs((normals * unit_vectors(positions)).sum(axis=1))
     values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
-    clip = _moved(places, view.projection)
+    clip = _moved(positions, view.projection)
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
     return _Surface(clip, values, triangles, HAIR, part_numbers(placed), False)
 

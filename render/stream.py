@@ -17,8 +17,8 @@ from ..geometry.arrays import Floats32, Integers32, Unsigned32
 from .camera import box_corners
 
 
-class Share(Enum):
-    """A group of the uploaded triangles."""
+class TriangleGroup(Enum):
+    """A group of the uploaded triangles: all, those with bumps, or those without."""
 
     ALL = "all"  # all triangles, in their order
     BUMPED = "bumped"  # triangles with a vertex where the bump map shows
@@ -47,7 +47,7 @@ def _layout(count: int) -> tuple[str, ...]:
 # Number of columns of a stream -> layout of its vertices in OpenGL.
 LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
 BUMPS = slice(8, 10)  # columns with the amounts of a bump map
-_Ranges = dict[Share, tuple[int, int]]  # first triangle and count in a buffer of indices
+_Ranges = dict[TriangleGroup, tuple[int, int]]  # first triangle and count in a buffer of indices
 
 
 class UploadedMesh(Protocol):
@@ -155,8 +155,8 @@ class MeshBuffers:
         is_shown = (amounts != 0.0).any(axis=1)
         is_bumped = is_shown[parts].any(axis=1)
         count = int(is_bumped.sum())
-        self._ranges[Share.BUMPED] = 0, count
-        self._ranges[Share.SMOOTH] = count, len(parts) - count
+        self._ranges[TriangleGroup.BUMPED] = 0, count
+        self._ranges[TriangleGroup.SMOOTH] = count, len(parts) - count
         if self._parted is None:
             room = 3 * NUMBER_BYTES * self._triangle_capacity
             self._parted = self.context.buffer(reserve=room, dynamic=True)
@@ -178,16 +178,16 @@ class MeshBuffers:
                 "stream of 18 columns, or draw without a fade"
             )
 
-    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
+    def draw(self, program: moderngl.Program, group: TriangleGroup = TriangleGroup.ALL) -> None:
         """Draw a group of the uploaded triangles; BUMPED and SMOOTH need a mesh with bumps.
 
         Available attributes: in_position, in_normal, in_uv, in_bumps, in_u_gradient, in_v_gradient
         and in_fade.
         """
-        if share is Share.ALL:
+        if group is TriangleGroup.ALL:
             self._draw_all(self._vertex_array(program, self.index_buffer))
             return
-        first, count = self._ranges.get(share, (0, 0))
+        first, count = self._ranges.get(group, (0, 0))
         if count == 0 or self._parted is None:
             return
         array = self._vertex_array(program, self._parted)
@@ -304,7 +304,7 @@ class GpuStream(MeshBuffers):
         *,
         has_bumps: bool = False,
     ) -> None:
-        """Draw the content of these buffers from now on.
+        """Draw the mesh in these buffers from now on.
 
         - mesh: an object that fetches the arrays.
         - positions: vertices of the base mesh, (V, 3); all new vertices lie near their box.

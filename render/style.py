@@ -18,7 +18,7 @@ Colour = tuple[float, float, float]
 
 
 class Shading(Enum):
-    """The elements (triangles, vertices or pixels) for which light is computed."""
+    """The elements for which light is computed: triangles, vertices or pixels."""
 
     FLAT = "flat"  # triangles, with geometric normals, so that every facet shows
     GOURAUD = "gouraud"  # vertices; colours are interpolated, as in the paper's pictures
@@ -34,7 +34,7 @@ class ColourBy(Enum):
 
     @classmethod
     def of(cls, *, splits: bool, wires: bool) -> Self:
-        """Return the member for two switches; `splits` takes precedence over `wires`."""
+        """Return the member for two switches; if both are set, `splits` decides."""
         if splits:
             return cls.SPLITS
         return cls.SPLIT_WIRES if wires else cls.NONE
@@ -43,7 +43,7 @@ class ColourBy(Enum):
 # Albedos, chosen by eye under this package's light.
 SKIN: Colour = (0.79, 0.625, 0.545)
 FLESH: Colour = (0.60, 0.27, 0.25)  # inside of lids and mouth
-INNER_SHARE = 0.75  # factor on the front's albedo for the back side, if it is not skin
+INNER_FACTOR = 0.75  # factor on the front's albedo for the back side, if it is not skin
 WARM_RATIO = 0.8  # warmth from which an albedo counts as skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
@@ -131,15 +131,15 @@ class Style:
 
     @property
     def scattering(self) -> float:
-        """Strength of subsurface scattering, 0.25 to 1; an albedo as warm as skin has 1."""
+        """Strength of subsurface scattering, 0.25 to 1; it is 1 for an albedo as warm as skin."""
         return max(self._warmth, 0.25)
 
     @property
     def inside(self) -> Colour:
-        """The albedo of the back side: red flesh behind skin, and darker clay behind clay."""
+        """The albedo of the back side: red flesh for a skin, darker clay for clay."""
         warmth = min(self._warmth / WARM_RATIO, 1.0)
         red, green, blue = (
-            warmth * flesh + (1.0 - warmth) * INNER_SHARE * front
+            warmth * flesh + (1.0 - warmth) * INNER_FACTOR * front
             for flesh, front in zip(FLESH, self.albedo, strict=True)
         )
         return red, green, blue

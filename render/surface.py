@@ -95,7 +95,7 @@ class Surface:
         return image_of(self.target.read(components), self.target.size, components)
 
     def make_current(self) -> None:
-        """Direct this thread's OpenGL calls to this surface, if several surfaces are open."""
+        """Direct OpenGL calls of this thread to this surface, if several are open."""
         if not self._is_open:
             raise GLError("this surface is closed. Cure: open a new one")
         if Surface._current is self:

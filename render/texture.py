@@ -113,7 +113,7 @@ class BumpMap(_Mipmaps):
     """A bump map: furrows of variable strength (4 channels), or constant fine shape (2 channels).
 
     - texels: the uploaded array, (H, W, channels).
-    - steepest: slope that the byte 255 means [unit of the scene per unit of texture coordinates].
+    - steepest: slope for the byte 255 [unit of the scene per unit of texture coordinates].
     - define: preprocessor name with which programs include the map.
     """
 
@@ -162,10 +162,10 @@ def _first_halved(image: Image, occlusion: Image) -> Floats32:
 
     height, width = image.shape[:2]
     if min(height, width) == 1:
-        places = np.empty((height, width, 4), np.intp)  # indices of `_values()`
-        places[..., :3] = image
-        places[..., 3] = 256 + occlusion.astype(np.intp)
-        return _halved(_values().take(places))
+        indices = np.empty((height, width, 4), np.intp)  # indices of `_values()`
+        indices[..., :3] = image
+        indices[..., 3] = 256 + occlusion.astype(np.intp)
+        return _halved(_values().take(indices))
     found = np.empty((height // 2, width // 2, 4), np.float32)
     write_halved(image, occlusion, _values(), found)
     return found

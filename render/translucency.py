@@ -11,7 +11,7 @@ from .camera import PlacedView
 from .frame import Frame, Plane, Skin
 from .opening import RIM_DEFINE
 from .render_target import intersection
-from .stream import MeshBuffers, Share
+from .stream import MeshBuffers, TriangleGroup
 
 CUT_WIDTH = 0.008  # visible thickness of cut skin, as a fraction of the scene's radius
 # Greatest distance that parts may come out of the skin, as a fraction of the scene's radius.
@@ -45,7 +45,7 @@ def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
 
 @contextlib.contextmanager
 def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
-    """Let drawings within this context change depths, but no colours."""
+    """Make drawings within this context write depths, but no colours."""
     gl.enable(moderngl.BLEND)
     gl.blend_func = moderngl.ZERO, moderngl.ONE
     try:
@@ -57,27 +57,27 @@ def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
 def draw_nearest(
     gl: moderngl.Context,
     stream: MeshBuffers,
-    shares: Sequence[tuple[moderngl.Program, Share]],
+    groups: Sequence[tuple[moderngl.Program, TriangleGroup]],
     *,
     is_cut: bool,
 ) -> None:
     """Blend only the nearest layer of a mesh: draw depths first, then colours at these depths.
 
-    shares: programs, and the groups of triangles that they draw.
+    groups: programs, and the groups of triangles that they draw.
     is_cut: whether a part of the mesh is opaque; its inner side is then drawn first.
     """
     gl.enable(moderngl.CULL_FACE)
     if is_cut:
         gl.cull_face = "front"
-        for program, share in shares:
-            stream.draw(program, share)
+        for program, group in groups:
+            stream.draw(program, group)
     gl.cull_face = "back"
     with changing_depth_alone(gl):
-        for program, share in shares:
-            stream.draw(program, share)
+        for program, group in groups:
+            stream.draw(program, group)
     with blending(gl):
-        for program, share in shares:
-            stream.draw(program, share)
+        for program, group in groups:
+            stream.draw(program, group)
     gl.disable(moderngl.CULL_FACE)
 
 

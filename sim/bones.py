@@ -30,12 +30,12 @@ class Bones:
         self._closed_weight = model.closed_weight
         self.head_weight = read_only(model.turns[:, 0])
         sides = [ball.side.value for ball in model.skull.eyeballs]
-        ways = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
+        names = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
         self._controls = controls
         places = controls.places_in_reached
         self._mouth = places(("jaw_open", "jaw_forward", "jaw_sideways", "lips_closed"))
         self._head = places(HEAD_CONTROLS)
-        self._gaze = places(ways)
+        self._gaze = places(names)
         self.jaw = (0.0, 0.0, 0.0)
         self._head_values = [0.0, 0.0, 0.0]
         self.mandible = self.head = REST  # seen from the cranium, and from the neck

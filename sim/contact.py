@@ -36,7 +36,7 @@ class LipPairs(NamedTuple):
 
     vertex: Integers32  # (P,)
     beside: Integers32  # (P, 2) ends of an edge-like segment of the other lip
-    share: Floats64  # (P,) of the first end
+    weight: Floats64  # (P,) of the first end
     below: Floats64  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
     least_gap: Floats64  # (P,) mm, vertical; small negative where lips overlap at rest
     seal: Floats64  # (P,) stiffness
@@ -46,8 +46,8 @@ class LipPairs(NamedTuple):
     def apart(self, values: Floats64) -> Floats64:
         """Values (V, 3) at the vertices of all P pairs, minus values at their points, (P, 3)."""
         a, b = self.beside.T
-        share = self.share[:, None]
-        apart: Floats64 = values[self.vertex] - share * values[a] - (1.0 - share) * values[b]
+        weight = self.weight[:, None]
+        apart: Floats64 = values[self.vertex] - weight * values[a] - (1.0 - weight) * values[b]
         return apart
 
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
@@ -109,7 +109,7 @@ class _LipPair(NamedTuple):
 
     vertex: int
     beside: tuple[int, int]
-    share: float
+    weight: float
     below: float
 
 
@@ -127,31 +127,31 @@ def _point_beside(
     a = int(other[right][reach[right].argmin()])
     b = int(other[left][reach[left].argmin()])
     span = x[b, 0] - x[a, 0]
-    share = 1.0
+    weight = 1.0
     if span > 1e-6:
-        share = float((x[b, 0] - here[0]) / span)
-    mixed = share * x[a] + (1.0 - share) * x[b]
+        weight = float((x[b, 0] - here[0]) / span)
+    mixed = weight * x[a] + (1.0 - weight) * x[b]
     _, gap, overhang = np.abs(mixed - here)
     most_overhang = 3.0  # mm that one lip's edge may lie in front of the other's
     if gap >= PAIR_GAP or overhang >= most_overhang:
         return None
-    return (a, b), share
+    return (a, b), weight
 
 
 def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipPairs:
     """Arrays of found pairs."""
     vertex = np.array([pair.vertex for pair in pairs], dtype=np.int32)
     beside = np.array([pair.beside for pair in pairs], dtype=np.int32).reshape(-1, 2)
-    share = np.array([pair.share for pair in pairs], dtype=np.float64)
+    weight = np.array([pair.weight for pair in pairs], dtype=np.float64)
     below = np.array([pair.below for pair in pairs], dtype=np.float64)
-    first = beside[share > 0.0, 0]
-    second = beside[share < 1.0, 1]
+    first = beside[weight > 0.0, 0]
+    second = beside[weight < 1.0, 1]
     paired = np.concatenate([vertex, first, second])
     count = np.bincount(paired, minlength=surface.vertex_count)
     most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
     strength = seal * surface.areas[vertex]
     members = np.flatnonzero(count).astype(np.int32)
-    lips = LipPairs(vertex, beside, share, below, share, strength, 1.0 / most, members)
+    lips = LipPairs(vertex, beside, weight, below, weight, strength, 1.0 / most, members)
     gap = -below * lips.apart(surface.positions)[:, 1]
     return lips._replace(least_gap=np.minimum(gap, 0.0))
 

@@ -1,8 +1,8 @@
 """Controls: the named values that a caller sets, and the activations that follow them.
 
 The lowest controls are muscles, jaw and gaze. Controls of the layers above (layers.py) are set in
-the same way, and add shares to the lowest controls. The `wanted` value of a lowest control is the
-sum of its own value and these shares, clamped to its limits.
+the same way, and add to the lowest controls by weights. The `wanted` value of a lowest control is
+the sum of its own value and these additions, clamped to its limits.
 
 A muscle does not reach a new activation at once: each control follows its wanted value as a
 critically damped oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly
@@ -27,7 +27,7 @@ from ..jit import njit
 from ..schema import quoted
 from .checked import number as finite
 from .checked import numbers
-from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
+from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, fraction_of_whole
 from .rig import Rig
 
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
@@ -67,7 +67,7 @@ class Controls:
     actions: Mapping[str, str]
     """The effect of each control, in words; "" if its file has none."""
     tables: Layers
-    """The shares that each control of the layers adds to the C lowest ones, in their order."""
+    """The weights by which each control of the layers adds to the C lowest ones, in their order."""
     reached: Floats64
     """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,), read only."""
     wanted: Floats64
@@ -78,7 +78,7 @@ class Controls:
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
         self.lowest = tuple(control.name for control in controls)
         self.tables = layers
-        self.names = (*self.lowest, *layers.shares)
+        self.names = (*self.lowest, *layers.weights)
         self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
@@ -94,7 +94,7 @@ class Controls:
         self._most = bounds[:, 1] + slack
         self._low, self._high = bounds[: len(controls)].T.copy()
         self._rate = np.array([control.rate for control in controls], dtype=np.float64)
-        self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
+        self._weights = np.array([layers.weights[name] for name in layers.weights])  # (N - C, C)
         floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
         self._floored = np.flatnonzero(floors.any(axis=1))  # only few rows of layers have floors
         self._floors = floors[self._floored]
@@ -188,12 +188,12 @@ class Controls:
     def _sums(self, values: Floats64) -> Floats64:
         count = len(self.lowest)
         sums: Floats64 = values[:count].copy()
-        if not len(self._shares):
+        if not len(self._weights):
             return sums
         counted = values.copy()
         for index, whole in self._share_of:
-            counted[index] = share_of_whole(values[index], values[whole])
-        sums += counted[count:] @ self._shares
+            counted[index] = fraction_of_whole(values[index], values[whole])
+        sums += counted[count:] @ self._weights
         least = (counted[count:][self._floored, None] * self._floors).max(axis=0, initial=0.0)
         np.maximum(sums, least, out=sums, where=least > 0.0)
         return np.clip(sums, self._low, self._high, out=sums)
@@ -255,7 +255,7 @@ class MuscleDrive:
 def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:
     """Return the limits of each control; a control for both sides has the limits of one side."""
     limits = {control.name: (control.low, control.high) for control in controls}
-    for name in layers.shares:
+    for name in layers.weights:
         sides = [limits[name + side] for side in SIDES if name + side in limits]
         of_both = sides and name in layers.groups.get(BOTH_SIDES, ())
         limits[name] = sides[0] if of_both else (0.0, 1.0)

@@ -89,7 +89,7 @@ def to_posed_head(
     axes: Floats64,
     head_rest: Floats64,
     turn: Floats64,
-    share: Floats64,
+    head_weight: Floats64,
     out: Floats64,
 ) -> int:
     """Fill `out` (V, 3) [head units] with positions; return how many are not finite.
@@ -98,7 +98,7 @@ def to_posed_head(
 
     x, rest: positions now and at rest [mm]; axes (3, 3): axes of the standard space in head
     coordinates, times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the
-    head; share (V, 1): how far each vertex follows it.
+    head; head_weight (V, 1): how far each vertex follows it.
     """
     broken = 0
     for i in range(len(x)):
@@ -111,7 +111,7 @@ def to_posed_head(
         px = head_rest[i, 0] + dx * axes[0, 0] + dy * axes[1, 0] + dz * axes[2, 0]
         py = head_rest[i, 1] + dx * axes[0, 1] + dy * axes[1, 1] + dz * axes[2, 1]
         pz = head_rest[i, 2] + dx * axes[0, 2] + dy * axes[1, 2] + dz * axes[2, 2]
-        s = share[i, 0]
+        s = head_weight[i, 0]
         for k in range(3):
             turned = turn[k, 0] * px + turn[k, 1] * py + turn[k, 2] * pz + turn[k, 3]
             here = px if k == 0 else (py if k == 1 else pz)

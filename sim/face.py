@@ -164,7 +164,7 @@ class Simulation:
         if model.lids is not None:
             drive = model.lids.drive(self.controls.activation)
             angles = np.radians(model.skull.eyes.gaze_deg) * bones.gaze()
-            angles *= model.lids.vertices.gaze_share[:, None]
+            angles *= model.lids.vertices.gaze_fraction[:, None]
             turn_lids(state, rest, model.lids.vertices, drive, angles)
         activation = self._drive.activation()
         muscles.add(self._drive.pull(activation), bones.mandible, bones.weight, state)

@@ -36,7 +36,7 @@ from .tongue import Tongue, place_tongue
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper one turns inside out
 NECK_LENGTH = 45.0  # mm below the chin over which the head's turn fades, or the throat folds
-MEETING_SHARE = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
+MEETING_FRACTION = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 WHOLE_LIP_REACH = 7.0  # mm from the mouth line up to which skin follows fully
 LIP_END_REACH = 32.0  # mm from the mouth line beyond which skin stays
 STEP_MARGIN = 1.0 + ROUNDING  # factor by which a substep may exceed LONGEST_SUBSTEP
@@ -110,7 +110,7 @@ def build_face(foundation: Foundation, landmark_indices: Integers64) -> FaceMode
         lids=lids,
         tongue=place_tongue(foundation.parts, foundation.space, landmark_indices),
         corners=landmarks[list(INNER_CORNERS)],
-        turns=_turning_share(surface, landmarks),
+        turns=_head_weight(surface, landmarks),
         closed_weight=_closed_weight(surface, landmarks, foundation.skull.mandible_weight),
     )
 
@@ -183,11 +183,11 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats
     return passive, greatest
 
 
-def _turning_share(surface: SkinSurface, landmarks: Floats64) -> Floats64:
+def _head_weight(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     """Return how far skin follows the head's pose, shape (V, 1); 0 at the base of the neck."""
     below = landmarks[8, 1] - surface.positions[:, 1]
-    share: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
-    return share
+    head_weight: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
+    return head_weight
 
 
 def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) -> Floats64:
@@ -198,4 +198,4 @@ def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) 
         lips = [polyline_distance(surface.positions, lip) for lip in (upper, lower)]
         distance = np.minimum(*lips)
     reach = (LIP_END_REACH - distance) / (LIP_END_REACH - WHOLE_LIP_REACH)
-    return weight + smoothstep(reach) * (MEETING_SHARE - weight)
+    return weight + smoothstep(reach) * (MEETING_FRACTION - weight)

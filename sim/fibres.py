@@ -94,7 +94,7 @@ class Stack(NamedTuple):
     line: Unsigned32  # (n,) number of the line that carries the point
     sample: Floats64  # (n,) place along that line, in samples
     place: Floats64  # (n,) the same, in points
-    share: Floats64  # (n,) share of its displacement
+    weight: Floats64  # (n,) weight of the line's displacement
     steady: Floats64  # (n, 3) mm of the displacement that is linear in the activation, at 1
 
 
@@ -124,7 +124,7 @@ def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
     return points
 
 
-def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Floats64:
+def bent_to_skin(lines: Floats64, surface: SkinSurface, fractions: Floats64) -> Floats64:
     """Move lines (n, FIBRE_POINTS, 3) toward the skin near them, each by its fraction (n,)."""
     if surface.vertex_count < WRAP_NEIGHBOURS or not len(lines):
         return lines
@@ -136,7 +136,7 @@ def bent_to_skin(lines: Floats64, surface: SkinSurface, shares: Floats64) -> Flo
         before = correction[:, :-2]
         after = correction[:, 2:]
         correction[:, 1:-1] = 0.25 * before + 0.5 * correction[:, 1:-1] + 0.25 * after
-    bent: Floats64 = lines + shares[:, None, None] * correction
+    bent: Floats64 = lines + fractions[:, None, None] * correction
     return bent
 
 
@@ -168,7 +168,7 @@ class FibreHold(NamedTuple):
 def hang_on_fibre(
     points: Floats64,
     hold: FibreHold,
-    places: AttachedPoints,
+    attached: AttachedPoints,
     weight: Floats64,
     arc: Floats64,
     steady: Floats64,
@@ -186,8 +186,8 @@ def hang_on_fibre(
     farthest = cut_widths**2 * (hold.width**2 + hold.beyond**2)
     last = reached[end] - reached[end - 1]
     foot = np.empty(3)
-    for n in range(len(places.positions)):
-        place = places.positions[n]
+    for n in range(len(attached.positions)):
+        place = attached.positions[n]
         outside = 0.0  # of the fibre's box: it reaches a tenth of the skin
         for axis in range(3):
             off = max(low[axis] - place[axis], 0.0, place[axis] - high[axis])
@@ -204,7 +204,7 @@ def hang_on_fibre(
             reach = max(squared - past**2, 0.0) / hold.width**2 + (past / hold.beyond) ** 2
         if reach >= cut_widths**2:
             continue
-        held = hold.weight * np.exp(-reach) * gate_at(hold.gate, place[0], places.lip_side[n])
+        held = hold.weight * np.exp(-reach) * gate_at(hold.gate, place[0], attached.lip_side[n])
         if held == 0.0:
             continue
         bulge = hold.bulge * np.exp(-(((along - hold.bulge_at) / bulge_spread) ** 2))
@@ -213,7 +213,7 @@ def hang_on_fibre(
         arc[n] = along
         for axis in range(3):
             steady[n, axis] = held * (hold.drawn * along) * (foot[axis] - place[axis])
-            steady[n, axis] += held * bulge * places.normals[n, axis]
+            steady[n, axis] += held * bulge * attached.normals[n, axis]
 
 
 @njit
@@ -320,7 +320,7 @@ def carry_line(
     steady = stack.steady
     sample = stack.sample
     place = stack.place
-    share = stack.share
+    weight = stack.weight
     contracted = motion.contracted
     carried = motion.carried
     is_carried = motion.is_carried
@@ -340,21 +340,23 @@ def carry_line(
             own[p, 2] += sz + w * (turn[2, 0] * sx + turn[2, 1] * sy + turn[2, 2] * sz - sz)
             if contraction[c] > 0.0:
                 s = min(np.uint32(sample[row]), contracted.shape[1] - 2)
-                far = share[row] * (sample[row] - s)
-                near = share[row] - far
+                far = weight[row] * (sample[row] - s)
+                near = weight[row] - far
                 for k in range(3):
                     own[p, k] += near * contracted[c, s, k] + far * contracted[c, s + 1, k]
         if is_carried[c]:
             s = min(np.uint32(place[row]), carried.shape[1] - 2)
-            far = share[row] * (place[row] - s)
-            near = share[row] - far
+            far = weight[row] * (place[row] - s)
+            near = weight[row] - far
             for k in range(3):
                 own[p, k] += near * carried[c, s, k] + far * carried[c, s + 1, k]
 
 
 @njit
-def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved: Floats64) -> None:
-    """Carry the points of a line by its bones; `share`: the mandible's weight at each point."""
+def follow_bones(
+    points: Floats64, weight: Floats64, mandible: RigidMotion, moved: Floats64
+) -> None:
+    """Carry the points of a line by its bones; `weight`: the mandible's weight at each point."""
     turn = mandible.rotation
     shift = mandible.shift
     for p in range(len(points)):
@@ -363,7 +365,7 @@ def follow_bones(points: Floats64, share: Floats64, mandible: RigidMotion, moved
         z = points[p, 2]
         for k in range(3):
             to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
-            moved[p, k] = points[p, k] + share[p] * (to - points[p, k])
+            moved[p, k] = points[p, k] + weight[p] * (to - points[p, k])
 
 
 @njit

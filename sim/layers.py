@@ -3,10 +3,10 @@
     muscles, jaw, gaze  <  both sides  <  action units  <  expressions  <  visemes  <  ARKit shapes
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
-a share: the row at 1 adds that share to the control that the entry names. This control must be in a
-layer below. Five keys of a row are not entries. `action` describes the effect of the row. `pair =
-true` makes three controls of one row: one for both sides, `..._left` and `..._right`; `pair = "Left
-Right"` makes two, `...Left` and `...Right`, as ARKit spells them:
+a weight: at value 1, the row adds this weight to the control that the entry names. This control
+must be in a layer below. Five keys of a row are not entries. `action` describes the effect of the
+row. `pair = true` makes three controls of one row: one for both sides, `..._left` and `..._right`;
+`pair = "Left Right"` makes two, `...Left` and `...Right`, as ARKit spells them:
 
     [AU4]
     action = "brow lowerer"
@@ -30,14 +30,14 @@ counts as its own value / the other control's value, at most 1:
     share_of = "jawOpen"            # mouthClose 0.3 shuts the lips where jawOpen is 0.3, and
     lips_closed = 1.0               # where that is 0.6 half; without jawOpen it does nothing
 
-`at_least` holds shares that do not add to others; they are minimum values, called floors.
+`at_least` holds weights that do not add to others; they are minimum values, called floors.
 
     [AU22]
     action = "lip funneler"
     at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
 
 How layers combine: everything adds up, in any order of setting. A muscle's value is its own value,
-plus each control above it times its share. It is raised to the greatest floor, and cut off at the
+plus each control above it times its weight. It is raised to the greatest floor, and cut off at the
 muscle's limits once, at the end.
 
 Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (its action units); Apple,
@@ -64,10 +64,10 @@ SIDES = ("_left", "_right")
 ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the names of a pair's sides
     {True: SIDES, "Left Right": ("Left", "Right")}
 )
-GREATEST_SHARE = 2.0  # a larger share is taken for a typing error
-Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
-Floor = Annotated[float, Within(0.0, GREATEST_SHARE)]
-LEAST_WHOLE = 0.08  # value of the control in `share_of` below which the share fades
+GREATEST_WEIGHT = 2.0  # a larger weight is taken for a typing error
+Weight = Annotated[float, Within(-GREATEST_WEIGHT, GREATEST_WEIGHT)]
+Floor = Annotated[float, Within(0.0, GREATEST_WEIGHT)]
+LEAST_WHOLE = 0.08  # value of the control in `share_of` below which the weight fades
 
 
 @dataclass(frozen=True)
@@ -76,14 +76,14 @@ class Layers:
 
     groups: title of the layer -> its names, from the lowest layer up.
     actions: name -> its effect, in words; "" if the table has none.
-    shares: name -> its addition to each of the C lowest controls at value 1, shape (C,).
+    weights: name -> its addition to each of the C lowest controls at value 1, shape (C,).
     floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
     share_of: name -> the control in the row's `share_of`, where there is one.
     """
 
     groups: Mapping[str, tuple[str, ...]]
     actions: Mapping[str, str]
-    shares: Mapping[str, Floats64]
+    weights: Mapping[str, Floats64]
     floors: Mapping[str, Floats64]
     share_of: Mapping[str, str]
 
@@ -91,7 +91,7 @@ class Layers:
 NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
-def share_of_whole(value: float, whole: float) -> float:
+def fraction_of_whole(value: float, whole: float) -> float:
     """Return `value` / `whole`, limited to 0 .. 1, and 0 if `whole` is 0.
 
     whole: value of the control that `share_of` names.
@@ -100,28 +100,28 @@ def share_of_whole(value: float, whole: float) -> float:
 
 
 def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
-    """Turn tables into shares of the lowest controls.
+    """Turn tables into weights of the lowest controls.
 
     given: objects from the bottom up, with `title`, `source` (the file, for errors) and `rows`,
     {row: {key: value}}; lowest: names of the lowest controls.
 
-    Raises ValueError, with file and row, for a name that no layer below has, a share that is not a
+    Raises ValueError, with file and row, for a name that no layer below has, a weight that is not a
     number, a name already in use, and a paired row whose name has a side.
     """
     reader = _Reader(lowest)
     reader.add_both_sides()
     for layer in several("head.layers", given, ("title", "source", "rows")):
-        below = dict(reader.shares)  # the controls that a row of this layer may name
+        below = dict(reader.weights)  # the controls that a row of this layer may name
         names: list[str] = []
         for name, row in read(dict[str, _Row], layer.rows, str(layer.source)).items():
             names += reader.add(f"{layer.source}, '{name}'", name, row, below)
         reader.groups[str(layer.title)] = tuple(names)
-    shares = list(reader.shares.items())[len(lowest) :]
+    weights = list(reader.weights.items())[len(lowest) :]
     floors = list(reader.floors.items())[len(lowest) :]
     return Layers(
         MappingProxyType({title: names for title, names in reader.groups.items() if names}),
         MappingProxyType(reader.actions),
-        MappingProxyType({name: read_only(row) for name, row in shares}),
+        MappingProxyType({name: read_only(row) for name, row in weights}),
         MappingProxyType({name: read_only(row) for name, row in floors}),
         MappingProxyType(reader.share_of),
     )
@@ -131,7 +131,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
 class _Row(Record):
     """A row of a table, as the head of this module describes it."""
 
-    entries: Rest[Share]
+    entries: Rest[Weight]
     action: str = ""
     pair: Annotated[bool | str, OneOf((False, *ENDINGS), 'true, false or "Left Right"')] = False
     mirror: str | None = None
@@ -144,10 +144,10 @@ class _Row(Record):
 
 
 class _Reader:
-    """Collects shares, layer by layer."""
+    """Collects weights, layer by layer."""
 
     def __init__(self, lowest: Sequence[str]) -> None:
-        self.shares: dict[str, Floats64] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
+        self.weights: dict[str, Floats64] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
         self.floors = {name: np.zeros(len(lowest)) for name in lowest}
         self.groups: dict[str, tuple[str, ...]] = {}
         self.actions: dict[str, str] = {}
@@ -156,13 +156,13 @@ class _Reader:
     def add_both_sides(self) -> None:
         """Add the layer of names without side; each moves both sides, or the only side there is."""
         sides: dict[str, list[Floats64]] = {}
-        for name, share in self.shares.items():
+        for name, weight in self.weights.items():
             if name.endswith(SIDES):
-                sides.setdefault(name.rpartition("_")[0], []).append(share)
-        names = tuple(name for name in sides if name not in self.shares)
+                sides.setdefault(name.rpartition("_")[0], []).append(weight)
+        names = tuple(name for name in sides if name not in self.weights)
         for name in names:
-            self.shares[name] = np.sum(sides[name], axis=0)
-            self.floors[name] = np.zeros_like(self.shares[name])
+            self.weights[name] = np.sum(sides[name], axis=0)
+            self.floors[name] = np.zeros_like(self.weights[name])
             self.actions[name] = ""
         self.groups[BOTH_SIDES] = names
 
@@ -172,17 +172,17 @@ class _Reader:
         sides = zip(ENDINGS[row.pair], SIDES, strict=True) if row.pair else [("", "")]
         made = {name + ending: self._sums(row, side, below) for ending, side in sides}
         if row.pair is True:
-            shares, floors = zip(*made.values(), strict=True)
-            made = {name: (np.sum(shares, axis=0), np.max(floors, axis=0)), **made}
+            weights, floors = zip(*made.values(), strict=True)
+            made = {name: (np.sum(weights, axis=0), np.max(floors, axis=0)), **made}
         if row.mirror is not None:
             self._check_entries(where, row.exchanged(), below)
             made[row.mirror] = self._sums(row.exchanged(), "", below)
-        for each, (share, floor) in made.items():
-            if each in self.shares:
+        for each, (weight, floor) in made.items():
+            if each in self.weights:
                 raise ValueError(
                     f"{where}: there is a control called '{each}' already; rename the row"
                 )
-            self.shares[each] = share
+            self.weights[each] = weight
             self.floors[each] = floor
             self.actions[each] = row.action
             if row.share_of is not None:
@@ -191,10 +191,10 @@ class _Reader:
 
     def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> None:
         """Raise ValueError for names that a row cannot have, or cannot refer to."""
-        if row.share_of is not None and row.share_of not in self.shares:
+        if row.share_of is not None and row.share_of not in self.weights:
             raise ValueError(
                 f"{where}, 'share_of': no row above and no layer below has a control called "
-                f"'{row.share_of}'{question(row.share_of, self.shares)}"
+                f"'{row.share_of}'{question(row.share_of, self.weights)}"
             )
         if row.mirror is not None and (row.pair or row.mirror == name):
             allowed = "another name, in a row that is no pair"
@@ -216,8 +216,8 @@ class _Reader:
                 raise ValueError(f"{where}: no layer below has a control called '{control}'{guess}")
             if control in self.share_of:
                 raise ValueError(
-                    f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
-                    "value that is set can be; name the controls that it moves instead"
+                    f"{where}, '{control}': is a fraction of '{self.share_of[control]}', which "
+                    "only a value that is set can be; name the controls that it moves instead"
                 )
 
     def _sums(
@@ -225,17 +225,17 @@ class _Reader:
     ) -> tuple[Floats64, Floats64]:
         """Shares and floors of a row, shape (C,) each; `side`: the side in a pair, or "".
 
-        A side takes its own side of each entry. An entry without sides gives it half the share, and
-        the whole floor.
+        A side takes its own side of each entry. An entry without sides gives it half the weight,
+        and the whole floor.
         """
-        share, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
+        weight, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
         for control, part in row.entries.items():
             sided = control + side
-            share += part * (below[sided] if sided in below else 0.5 * below[control])
+            weight += part * (below[sided] if sided in below else 0.5 * below[control])
             floor = np.maximum(floor, part * self.floors[sided if sided in below else control])
         for control, part in row.at_least.items():
             floor = np.maximum(floor, part * below.get(control + side, below[control]))
-        return share, floor
+        return weight, floor
 
 
 def _exchanged(entries: Mapping[str, float]) -> dict[str, float]:

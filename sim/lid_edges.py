@@ -98,21 +98,21 @@ def one_lid(
     distance = polyline_distance(surface.positions, edge)
     column = axes.column(surface.positions)
     edge = edge[np.argsort(axes.column(edge), kind="stable")]
-    places = axes.column(edge)
+    columns = axes.column(edge)
     where = np.linspace(0.0, 1.0, COLUMNS)
     margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
     slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
     return OneLid(
-        weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
-        fold=on_lid * _share(distance, *fold_ends),
-        slide=on_lid * _share(distance, 0.0, slide_reach * eyes.lid_reach),
+        weight=on_lid * _falloff(distance, eyes.lid_plateau, eyes.lid_reach),
+        fold=on_lid * _falloff(distance, *fold_ends),
+        slide=on_lid * _falloff(distance, 0.0, slide_reach * eyes.lid_reach),
         distance=distance,
         near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
-        front=np.interp(where, places, axes.angle(edge)),
-        depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
+        front=np.interp(where, columns, axes.angle(edge)),
+        depth=np.interp(where, columns, np.linalg.norm(edge - axes.centre, axis=1)),
     )
 
 
-def _share(distance: Floats64, plateau: float, reach: float) -> Floats64:
+def _falloff(distance: Floats64, plateau: float, reach: float) -> Floats64:
     """Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
     return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))

@@ -24,20 +24,20 @@ from .skull import Eyeball
 LIFT_TOLERANCE = 1e-3  # mm
 
 
-def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, share: Floats64) -> Floats64:
+def laid_on_ball(x: Floats64, ball: Eyeball, column: Floats64, turn_weight: Floats64) -> Floats64:
     """Return how much nearer to the eyeball the skin of a closed upper lid lies [mm], shape (V,).
 
     Skin of the fold is farther from the eyeball than the margin. Without this sinking, a closed lid
     would form a pouch in front of the ball that hangs over the lashes.
 
     x: vertices at rest (V, 3). column: fractions of the way from the outer corner of the eye (0) to
-    the inner corner (1), shape (V,). share: how far each vertex turns with the margin, 0 to 1,
-    shape (V,).
+    the inner corner (1), shape (V,). turn_weight: how far each vertex turns with the margin, 0 to
+    1, shape (V,).
     """
     thickness = 2.2  # [mm] of skin, muscle and plate, from the eyeball to the front of a lid
     most_sunk = 5.0  # [mm]
     beyond = np.linalg.norm(x - ball.centre, axis=1) - ball.radius - thickness
-    lies = smoothstep(2.0 * share) * np.sqrt(np.sin(np.pi * np.clip(column, 0.0, 1.0)))
+    lies = smoothstep(2.0 * turn_weight) * np.sqrt(np.sin(np.pi * np.clip(column, 0.0, 1.0)))
     sunk: Floats64 = lies * np.clip(beyond, 0.0, most_sunk)
     return sunk
 
@@ -51,36 +51,36 @@ def lift_off(
     there. moves: 1 for vertices of the upper lid, else 0, shape (V,).
     """
     away = x - ball.centre
-    ways = unit_vectors(away, LIFT_TOLERANCE)
+    directions = unit_vectors(away, LIFT_TOLERANCE)
     faces = faces[moves[faces].any(axis=1)]
     outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
     faces = faces[outward > 0.0]  # not the inner side of a lid
-    shares = _shares()
+    barycentric = _barycentric_grid()
     lift = np.zeros(len(x))
-    before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
+    before = np.linalg.norm(barycentric @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
     least_share = 0.5  # least total share of the upper lid's corners in a point for which they move
-    kept[moves[faces] @ shares.T < least_share] = -np.inf
+    kept[moves[faces] @ barycentric.T < least_share] = -np.inf
     most_passes = 30  # most repetitions, needed because triangles share corners
     for _ in range(most_passes):
-        points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
+        points = barycentric @ (away + lift[:, None] * directions)[faces]  # (F, S, 3)
         deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
-        share = shares[deep.argmax(axis=1)] * moves[faces]
-        push = deep.max(axis=1, initial=0.0) / np.maximum((share**2).sum(axis=1), LIFT_TOLERANCE)
+        weights = barycentric[deep.argmax(axis=1)] * moves[faces]
+        push = deep.max(axis=1, initial=0.0) / np.maximum((weights**2).sum(axis=1), LIFT_TOLERANCE)
         if push.max(initial=0.0) < LIFT_TOLERANCE:
             break
         further = np.zeros(len(x))
-        np.maximum.at(further, faces, share * push[:, None])
+        np.maximum.at(further, faces, weights * push[:, None])
         lift += further
     return lift
 
 
-def _shares() -> Floats64:
+def _barycentric_grid() -> Floats64:
     """Return the barycentric coordinates of points all over a triangle, shape (S, 3)."""
     edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
     n = edge_steps
-    ways = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
-    return np.array(ways, np.float64) / n
+    steps = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
+    return np.array(steps, np.float64) / n
 
 
 def _reach(points: Floats64, radius: float) -> Floats64:

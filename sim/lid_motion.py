@@ -31,7 +31,7 @@ class LidVertices(NamedTuple):
     shut_hold: Floats64  # (L,) stiffness by which the muscle presses a shut upper lid down
     centres: Floats64  # (eyes, 3)
     radii: Floats64  # (eyes,)
-    gaze_share: Floats64  # (eyes,) share of the gaze that lids follow
+    gaze_fraction: Floats64  # (eyes,) share of the gaze that lids follow
     up: Floats64  # (eyes, 3) unit, across the lid axis
     forward: Floats64  # (eyes, 3) unit
     inward: Floats64  # (eyes, 3) unit, from the outer to the inner corner

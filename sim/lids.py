@@ -147,7 +147,8 @@ def _lid_vertices(
         * np.array([[-ball.side.sign] for ball in eyeballs]),
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_share=np.array([ball.gaze_share for ball in eyeballs]) * opened_share_of(apertures),
+        gaze_fraction=np.array([ball.gaze_factor for ball in eyeballs])
+        * gaze_fractions_of(apertures),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
@@ -155,15 +156,15 @@ def _lid_vertices(
     return vertices, hold
 
 
-def opened_share_of(apertures: Floats64) -> Floats64:
+def gaze_fractions_of(apertures: Floats64) -> Floats64:
     """Return how far the lids of each eye follow the gaze, 0 to 1, shape (eyes,).
 
     apertures: greatest opening of each eye at rest [rad], shape (eyes,). Lids that are shut at rest
     do not follow, because a look upward would open them.
     """
     shut, narrow = 0.08, 0.16  # rad; 0.08 is a millimetre on a human ball
-    share: Floats64 = smoothstep((apertures - shut) / (narrow - shut))
-    return share
+    fraction: Floats64 = smoothstep((apertures - shut) / (narrow - shut))
+    return fraction
 
 
 def _lift(lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool) -> Floats64:
@@ -236,8 +237,8 @@ def _one_eye(
     weight = upper.weight + lower.weight
     opening = weight * exact + (1.0 - weight) * broad
     is_upper = side > 0.0
-    share = np.where(is_upper, eyes.blink_meeting - 1.0, eyes.blink_meeting)
-    closing = share * weight * opening
+    fraction = np.where(is_upper, eyes.blink_meeting - 1.0, eyes.blink_meeting)
+    closing = fraction * weight * opening
     inward = slide * np.where(is_upper, *eyes.blink_slide)
     arrives = column + inward / np.linalg.norm(axes.axis)
     plain_seam = lower.front + eyes.blink_meeting * height
@@ -250,9 +251,9 @@ def _one_eye(
     closing[margins] = (meeting - angle)[margins]
     closing = _evened(even, closing, np.minimum(upper.distance, lower.distance), margins)
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
-    corner_share = 0.5  # share of the open lid's motion at the corners, whose ligaments stretch
+    corner_fraction = 0.5  # share of the open lid's motion at the corners, whose ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
-    at_middle = corner_share + (1.0 - corner_share) * rounded
+    at_middle = corner_fraction + (1.0 - corner_fraction) * rounded
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
@@ -262,7 +263,7 @@ def _one_eye(
     least_turn = 1e-3  # vertices that move less do not belong to the lids
     most_moved = np.maximum.reduce([weight, fold, slide])
     vertex = np.flatnonzero(most_moved > least_turn)
-    overlap = weight * ball.gaze_share * _pressed_turn(opening / ball.gaze_share, least_opening)
+    overlap = weight * ball.gaze_factor * _pressed_turn(opening / ball.gaze_factor, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
 
@@ -324,8 +325,8 @@ def _evened(even: Smooth, closing: Floats64, distance: Floats64, margins: Flags)
     """
     begins = 0.8  # mm from the front edge
     ends = 1.8
-    share = np.where(margins, 0.0, smoothstep((distance - begins) / (ends - begins)))
-    return closing + share * (even(closing) - closing)
+    fraction = np.where(margins, 0.0, smoothstep((distance - begins) / (ends - begins)))
+    return closing + fraction * (even(closing) - closing)
 
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:

@@ -144,8 +144,8 @@ class MuscleForces:
             vertices, weight = held[b]
             arc = arc_lengths(points)
             away = np.abs(arc / max(arc[-1], 1e-9) - self.bundle.fixed_at[b])
-            share = (away / max(away.max(), 1e-9))[:, None] * (len(vertices) > 0)
-            moved = points + bone + share * (weight @ moved_skin[vertices] - bone)
+            fraction = (away / max(away.max(), 1e-9))[:, None] * (len(vertices) > 0)
+            moved = points + bone + fraction * (weight @ moved_skin[vertices] - bone)
             lines[self.names[muscle]].append(moved)
         return lines
 

@@ -66,8 +66,8 @@ def stack_muscles(
         if above:
             # Points are numbered through all lines, FIBRE_POINTS of each line.
             on = np.flatnonzero(np.repeat(np.isin(owners, above), FIBRE_POINTS))
-            places = AttachedPoints(points.reshape(-1, 3)[on], normals[on], sides[on])
-            found.append(_carried(placed[n], first, landmarks, places, on))
+            attached = AttachedPoints(points.reshape(-1, 3)[on], normals[on], sides[on])
+            found.append(_carried(placed[n], first, landmarks, attached, on))
         first += len(placed[n].lines)
     return _stack_of(found, len(lines))
 
@@ -93,14 +93,14 @@ def _carried(
     beneath: PlacedMuscle,
     first: int,
     landmarks: Floats64,
-    places: AttachedPoints,
+    attached: AttachedPoints,
     at: Integers64,
 ) -> _Carried:
     """Attach the points with indices `at` to a muscle, each to its line of greatest weight.
 
     first: index of the muscle's first line.
     """
-    holds = [attach(beneath, line, landmarks, places) for line in beneath.lines]
+    holds = [attach(beneath, line, landmarks, attached) for line in beneath.lines]
     along = [points_along(line, hold.arc) for line, hold in zip(beneath.lines, holds, strict=True)]
     strongest = np.argmax([hold.weight for hold in holds], axis=0)
     each = strongest, np.arange(len(at))
@@ -117,8 +117,8 @@ def _carried(
 def points_along(line: Line, arc: Floats64) -> Floats64:
     """Convert arc lengths 0..1 along a line to fractional indices of its points, shape (n,)."""
     reached = arc_lengths(line.points)
-    places: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
-    return places
+    positions: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
+    return positions
 
 
 def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
@@ -131,9 +131,9 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
     held = np.zeros(line_count * FIBRE_POINTS)
     np.add.at(held, joined.at, joined.weight)
     most = np.maximum(held, 1.0)[joined.at]
-    share = joined.weight / most
-    least_share = 0.02  # share of a displacement; smaller shares are dropped
-    on = np.flatnonzero(share > least_share)
+    weight = joined.weight / most
+    least_weight = 0.02  # weight of a displacement; smaller ones are dropped
+    on = np.flatnonzero(weight > least_weight)
     owner, point = np.divmod(joined.at[on], FIBRE_POINTS)
     sorting = np.lexsort((point, joined.line[on], owner))
     on = on[sorting]
@@ -143,6 +143,6 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
         line=joined.line[on].astype(np.uint32),
         sample=joined.sample[on],
         place=joined.place[on],
-        share=share[on],
+        weight=weight[on],
         steady=joined.steady[on] / most[on, None],
     )

@@ -134,15 +134,15 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
 
 
 def attach(
-    placed: PlacedMuscle, line: Line, landmarks: Floats64, places: AttachedPoints
+    placed: PlacedMuscle, line: Line, landmarks: Floats64, attached: AttachedPoints
 ) -> Attachment:
     """Attach points to one line of a muscle in a face."""
     muscle = placed.muscle
     side = placed.side
     if isinstance(muscle, RingMuscle):
-        return attach_to_ring(muscle, line.points, landmarks, side, places)
+        return attach_to_ring(muscle, line.points, landmarks, side, attached)
     assert line.fibre is not None
-    return attach_to_fibre(muscle, line.fibre, line.points, side, places)
+    return attach_to_fibre(muscle, line.fibre, line.points, side, attached)
 
 
 def _gate(muscle: Muscle, side: Side) -> Gate:
@@ -153,7 +153,7 @@ def _gate(muscle: Muscle, side: Side) -> Gate:
 
 
 def attach_to_fibre(
-    muscle: LinearMuscle, fibre: Fibre, points: Floats64, side: Side, places: AttachedPoints
+    muscle: LinearMuscle, fibre: Fibre, points: Floats64, side: Side, attached: AttachedPoints
 ) -> Attachment:
     """Attach points to a fibre of a linear muscle; the skin slides, converges and bulges."""
     hold = FibreHold(
@@ -166,20 +166,20 @@ def attach_to_fibre(
         lift=fibre.lift,
         gate=_gate(muscle, side),
     )
-    count = len(places.positions)
+    count = len(attached.positions)
     found = Attachment(np.zeros(count), np.zeros(count), np.zeros((count, 3)))
-    hang_on_fibre(points, hold, places, *found)
+    hang_on_fibre(points, hold, attached, *found)
     return found
 
 
 def attach_to_ring(
-    muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, places: AttachedPoints
+    muscle: RingMuscle, points: Floats64, landmarks: Floats64, side: Side, attached: AttachedPoints
 ) -> Attachment:
     """Attach points to a sphincter, an elliptic ring that contracts to a centre."""
     _, up, down = muscle.radii
-    rho, weight = _within_ring(muscle, landmarks, side, places)
+    rho, weight = _within_ring(muscle, landmarks, side, attached)
     on = np.flatnonzero(weight)  # most of the skin lies beside the arc or on the other lip
-    held = AttachedPoints(*(each[on] for each in places))
+    held = AttachedPoints(*(each[on] for each in attached))
     count = len(weight)
     found = Attachment(weight, np.zeros(count), np.zeros((count, 3)))
     found.steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
@@ -192,17 +192,17 @@ def attach_to_ring(
 
 
 def _within_ring(
-    muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
+    muscle: RingMuscle, landmarks: Floats64, side: Side, attached: AttachedPoints
 ) -> tuple[Floats64, Floats64]:
     """Relative radii of points, 1 on the ellipse, and weights of their attachment, (n,)."""
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
     rear = float(landmarks[[36, 45], 2].mean()) - face_depth
     ellipse = (*_middle(muscle, landmarks, side).tolist(), *muscle.radii)
     arc = (side.sign, *muscle.arc_deg)
-    count = len(places.positions)
+    count = len(attached.positions)
     rho = np.zeros(count)
     weight = np.zeros(count)
-    _hold_in_ring(ellipse, muscle.edge, arc, rear, _gate(muscle, side), places, rho, weight)
+    _hold_in_ring(ellipse, muscle.edge, arc, rear, _gate(muscle, side), attached, rho, weight)
     return rho, weight
 
 
@@ -213,7 +213,7 @@ def _hold_in_ring(
     arc: tuple[float, ...],
     rear: float,
     gate: Gate,
-    places: AttachedPoints,
+    attached: AttachedPoints,
     rho: Floats64,
     weight: Floats64,
 ) -> None:
@@ -226,8 +226,8 @@ def _hold_in_ring(
     outside, inside = edge
     sign, at, half, fade = arc
     for n in range(len(rho)):
-        place = places.positions[n]
-        may_act = gate_at(gate, place[0], places.lip_side[n])
+        place = attached.positions[n]
+        may_act = gate_at(gate, place[0], attached.lip_side[n])
         if place[2] <= rear or may_act == 0.0:
             continue
         aside = place[0] - x
@@ -245,10 +245,10 @@ def _hold_in_ring(
 
 
 def _ring_pull(
-    muscle: RingMuscle, landmarks: Floats64, side: Side, places: AttachedPoints
+    muscle: RingMuscle, landmarks: Floats64, side: Side, attached: AttachedPoints
 ) -> Floats64:
     """Displacement of points by a sphincter at full activation [mm], shape (n, 3)."""
-    x = places.positions
+    x = attached.positions
     centre = muscle.centre.on(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
     if muscle.opening != (0.0, 0.0):
@@ -267,7 +267,7 @@ def _ring_pull(
     flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
     height = (x[:, 1] - seam) / flare_height
     pull[:, 1] += muscle.flare * np.tanh(height) * across
-    pull += muscle.bulge * places.normals
+    pull += muscle.bulge * attached.normals
     return pull
 
 

@@ -216,19 +216,19 @@ class Pull:
         """Mean square distance of vertices (V, 3) under the finger from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
-    def _towards(self, names: Names, share: float) -> dict[str, float]:
+    def _towards(self, names: Names, fraction: float) -> dict[str, float]:
         """Values of controls moved up by a share of their range, or down without room above."""
         low, high = self._base.controls.limits[names[0]]
         value = self._base.controls.values[names[0]]
-        step = share * (high - low)
+        step = fraction * (high - low)
         moved = value + step if value + step <= high else max(value - step, low)
         return dict.fromkeys(names, moved)
 
     def _measure(self, which: npt.ArrayLike) -> None:
         """Slopes of the skin in the controls with these indices, at the current values."""
-        probe_share = 0.25  # of a control's range, to measure its slope
+        probe_fraction = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
-            moved = self._towards(self.candidates[n], probe_share)
+            moved = self._towards(self.candidates[n], probe_fraction)
             self._probe.copy_from(self._base)
             _rest(self._probe, moved)
             by = next(iter(moved.values())) - self._value[n]

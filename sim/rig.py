@@ -273,14 +273,14 @@ def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
     _refuse_circle(muscles, (muscle.name,))
 
 
-def _refuse_circle(muscles: Mapping[str, Muscle], way: tuple[str, ...]) -> None:
-    """Go down from the last muscle of `way`; raise ValueError on a return to its first muscle."""
-    for name in muscles[way[-1]].lies_on:
-        if name == way[0]:
-            circle = " on ".join((*way, name))
+def _refuse_circle(muscles: Mapping[str, Muscle], path: tuple[str, ...]) -> None:
+    """Go down from the last muscle of `path`; raise ValueError on a return to its first muscle."""
+    for name in muscles[path[-1]].lies_on:
+        if name == path[0]:
+            circle = " on ".join((*path, name))
             raise ValueError(f"'{name}', 'lies_on': {circle} is a circle; take one out")
-        if name in muscles and name not in way:
-            _refuse_circle(muscles, (*way, name))
+        if name in muscles and name not in path:
+            _refuse_circle(muscles, (*path, name))
 
 
 @dataclass(frozen=True)

@@ -94,10 +94,10 @@ def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
 def _numbered(edges: Integers32, diagonal: Integers32, vertex_count: int) -> sparse.csr_array:
     """A symmetric matrix with the index of each edge, and E + i on the diagonal for vertex i."""
     i, j = edges.T
-    places = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])
+    entries = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])
     numbers = np.arange(len(edges) + len(diagonal))
     values = np.concatenate([numbers[: len(edges)], numbers])
     shape = (vertex_count, vertex_count)
-    matrix = sparse.coo_array((values, places), shape=shape).tocsr()
+    matrix = sparse.coo_array((values, entries), shape=shape).tocsr()
     matrix.sort_indices()
     return matrix

@@ -79,7 +79,7 @@ class Eyeball:
     radius: float
 
     @property
-    def gaze_share(self) -> float:
+    def gaze_factor(self) -> float:
         """Factor on the angles of ball and lids: 1, or less for a ball larger than a human one.
 
         Iris and lids of a larger ball move as far as on a human ball, because artists put larger
@@ -114,16 +114,16 @@ class Skull:
 
     def mandible_motion(self, opening: float, forward: float, sideways: float) -> RigidMotion:
         """Motion of the mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
-        ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
+        glides = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
         # Share of the way forward: a human jaw moves back by two millimetres at most.
         backward_share = 0.15
         values = opening, max(forward, backward_share * forward), sideways
-        return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
+        return RigidMotion.of(*move_mandible(self.condyles, glides, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """Motion of an eyeball that looks to the subject's left (+1) and up (+1)."""
-        most = math.radians(self.eyes.gaze_deg) * eyeball.gaze_share
+        most = math.radians(self.eyes.gaze_deg) * eyeball.gaze_factor
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
         return RigidMotion.about(eyeball.centre, yaw @ pitch)
@@ -196,14 +196,14 @@ def turn_head(condyles: Floats64, joint: Triple, angles: Triple) -> tuple[Floats
 @njit
 def move_mandible(
     condyles: Floats64,
-    ways: tuple[Triple, Triple, Triple],
+    glides: tuple[Triple, Triple, Triple],
     angles: tuple[float, float],
     values: Triple,
 ) -> tuple[Floats64, Floats64]:
     """Rotation (3, 3) and shift (3,) [mm] of the mandible, see `Skull.mandible_motion`.
 
-    condyles: (2, 3) [mm]; ways: glide at value 1 of each control [mm]; angles: at full opening and
-    at full sideways motion [rad]; values: open, forward, sideways.
+    condyles: (2, 3) [mm]; glides: glide at value 1 of each control [mm]; angles: at full opening
+    and at full sideways motion [rad]; values: open, forward, sideways.
     """
     right = condyles[0]
     left = condyles[1]
@@ -216,7 +216,7 @@ def move_mandible(
     turn = times(aside, opened)
     shift = pivot + turned(aside, shift - pivot)
     for k in range(3):
-        shift[k] += values[0] * ways[0][k] + values[1] * ways[1][k] + values[2] * ways[2][k]
+        shift[k] += values[0] * glides[0][k] + values[1] * glides[1][k] + values[2] * glides[2][k]
     return turn, shift
 
 

@@ -211,7 +211,7 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         i = lips.vertex[p]
         a = lips.beside[p, 0]
         b = lips.beside[p, 1]
-        w = lips.share[p]
+        w = lips.weight[p]
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
         inverse /= lips.averaging[p]
         for k in range(3):
@@ -260,7 +260,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
         i = lips.vertex[p]
         a = lips.beside[p, 0]
         b = lips.beside[p, 1]
-        w = lips.share[p]
+        w = lips.weight[p]
         below = lips.below[p]
         gap = below * (w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1])
         deep = lips.least_gap[p] - overlap - gap
@@ -303,7 +303,7 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
     shift = mandible.shift
     arch = teeth.arch
     tooth_fade = 3.0  # mm above and below the teeth over which their contact fades
-    least_share = 0.1  # share of an arch's radius: nearer to the axis the way out is ambiguous
+    least_ratio = 0.1  # share of an arch's radius: nearer to the axis the way out is ambiguous
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         width = arch[c, 0]
@@ -325,11 +325,11 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
         ahead = pz - axis
         if beyond >= tooth_fade or ahead <= 0.0:
             continue
-        share = np.sqrt((px / width) ** 2 + (ahead / depth) ** 2)
-        sunk = (teeth.least[c] - share) * (1.0 - beyond / tooth_fade)
-        if sunk <= 0.0 or share < least_share:
+        radius_ratio = np.sqrt((px / width) ** 2 + (ahead / depth) ** 2)
+        sunk = (teeth.least[c] - radius_ratio) * (1.0 - beyond / tooth_fade)
+        if sunk <= 0.0 or radius_ratio < least_ratio:
             continue
-        out = sunk / share
+        out = sunk / radius_ratio
         dx = out * px
         dy = 0.0
         dz = out * ahead

@@ -39,9 +39,9 @@ class Teeth(NamedTuple):
         in_jaw = (points - mandible.shift) @ mandible.rotation
         points = np.where(self.lower[:, None], in_jaw, points)
         width, depth, axis, low, high = self.arch.T
-        share = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
+        radius_ratio = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
         met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
-        sunk = np.where(met, (self.least - share) * np.minimum(width, depth), 0.0)
+        sunk = np.where(met, (self.least - radius_ratio) * np.minimum(width, depth), 0.0)
         return float(max(sunk.max(), 0.0))
 
 
@@ -93,5 +93,5 @@ def _arch(teeth: Floats64) -> Floats64:
 
 def _inside(points: Floats64, arch: Floats64) -> Floats64:
     """Distance from the axis, relative to the arch's surface there, shape (n,)."""
-    share: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
-    return share
+    radius_ratio: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
+    return radius_ratio

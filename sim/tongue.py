@@ -177,9 +177,9 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     middle = np.polynomial.Polynomial.fit(along, rest[:, 1], degree)
     off = rest[:, 1] - middle(along)
     slices = np.array_split(np.argsort(along), slice_count)
-    middles = [along[numbers].mean() for numbers in slices]
-    halves = [np.ptp(off[numbers]) / 2 for numbers in slices]
-    half = np.interp(place, middles, halves)
+    slice_positions = [along[indices].mean() for indices in slices]
+    halves = [np.ptp(off[indices]) / 2 for indices in slices]
+    half = np.interp(place, slice_positions, halves)
     spine = np.stack([tip - place * (tip - root), middle(place)], axis=1)
     # Landmarks of the upper lip, and of the lower lip's middle, lower edge and both sides.
     lips = (62, 66, 57, 65, 67)

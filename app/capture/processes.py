@@ -23,7 +23,7 @@ from .drawing import Capture, CaptureOptions, Frame
 
 
 @dataclass(frozen=True)
-class Share:
+class TriangleGroup:
     """The frames that one process draws: first, first + every, ..., up to the time `until` [s]."""
 
     script: Script
@@ -79,7 +79,7 @@ def drawing(
     with cleaned_up_if_stopped(stop):
         try:
             for first in range(count):
-                drawers.append(Worker(_draw, Share(script, options, until, first, count)))
+                drawers.append(Worker(_draw, TriangleGroup(script, options, until, first, count)))
             drawn = [drawer.messages() for drawer in drawers]
             for index in counted_frames(until, rate, progress=progress):
                 yield index / rate, partial(take, drawn[index % count])
@@ -89,7 +89,7 @@ def drawing(
                 drawer.close()
 
 
-def _draw(share: Share, send: Send) -> None:
+def _draw(share: TriangleGroup, send: Send) -> None:
     """Draw and send the frames of a share; send None for a frame equal to the last one."""
     options = share.options
     if share.first == 0:

@@ -16,7 +16,7 @@ from .folder import SetFolder
 from .packing import Packing
 from .request import SetRequest
 from .sampling import draw
-from .sharing import MadeSample, Share, made_on_cluster, make_samples
+from .sharing import MadeSample, TriangleGroup, made_on_cluster, make_samples
 from .summary import card_of, write_index
 
 
@@ -93,7 +93,7 @@ def _check(folder: SetFolder, numbers: range) -> None:
     )
 
 
-def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Share]:
+def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[TriangleGroup]:
     """Divide missing samples into shares of `each` samples.
 
     Samples of one person stay together, because a head takes long to build. Samples of one shard
@@ -106,7 +106,7 @@ def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Shar
 
     ordered = sorted(missing, key=place)
     return [
-        Share(request, tuple(ordered[first : first + each]))
+        TriangleGroup(request, tuple(ordered[first : first + each]))
         for first in range(0, len(ordered), max(each, 1))
     ]
 

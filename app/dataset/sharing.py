@@ -25,7 +25,7 @@ from .studio import Studio
 
 
 @dataclass(frozen=True)
-class Share:
+class TriangleGroup:
     """The samples that one process makes.
 
     numbers: numbers of the samples, sorted by person.
@@ -50,7 +50,7 @@ class MadeSample:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def make_samples(share: Share, send: Send) -> None:
+def make_samples(share: TriangleGroup, send: Send) -> None:
     """Make the missing samples of a share, and pass a `MadeSample` to `send` after each sample."""
     request = share.request
     here = version("risorius")
@@ -83,7 +83,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 
 
 def made_on_cluster(
-    folder: SetFolder, shares: Sequence[Share], scheduler: str
+    folder: SetFolder, shares: Sequence[TriangleGroup], scheduler: str
 ) -> Iterator[MadeSample]:
     """Let a Dask cluster make samples, and yield them; the first failure raises UserError."""
     if not shares:
@@ -100,7 +100,7 @@ def made_on_cluster(
             yield from result
 
 
-def _make_on_worker(pool: WorkerPool, share: Share) -> list[MadeSample] | str:
+def _make_on_worker(pool: WorkerPool, share: TriangleGroup) -> list[MadeSample] | str:
     """Make a share in a process of a Dask worker; return the samples, or the text of an error."""
     made: dict[int, MadeSample] = {}  # a process that died may have sent some of them already
 

@@ -23,7 +23,7 @@ from risorius.assets.identities import (
     Population,
 )
 from risorius.assets.identities.hair import CUTS
-from risorius.assets.identities.population import IRIS_SHARES
+from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.render import LIGHTS
 from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
@@ -72,7 +72,7 @@ def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
 
 
 Weight = Annotated[float, Within(0.0, 1e6)]
-Share = Annotated[float, Within(0.0, 1.0)]
+TriangleGroup = Annotated[float, Within(0.0, 1.0)]
 Degrees = Annotated[float, Within(0.0, 15.0)]
 Unit = Annotated[str, OneOf(_units)]
 
@@ -85,9 +85,9 @@ class Expression(Record):
     face is one-sided.
     """
 
-    units: Annotated[dict[Unit, Share], called(REST)]
+    units: Annotated[dict[Unit, TriangleGroup], called(REST)]
     share: Weight = 0.0
-    one_sided: Share = 0.0
+    one_sided: TriangleGroup = 0.0
 
     @property
     def row(self) -> Shares:
@@ -119,17 +119,17 @@ class Excluded(Record):
 class Sides(Record):
     """Probabilities of asymmetric and of one-sided faces, and difference between the sides."""
 
-    asymmetric: Share
-    difference: Share
-    one_sided: Share
+    asymmetric: TriangleGroup
+    difference: TriangleGroup
+    one_sided: TriangleGroup
 
 
 @dataclass(frozen=True)
 class Eyes(Record):
     """Probabilities of a blink and of a look into the camera; spread of the gaze [degrees]."""
 
-    blink: Share
-    at_camera: Share
+    blink: TriangleGroup
+    at_camera: TriangleGroup
     horizontal: Degrees
     vertical: Degrees
 
@@ -159,7 +159,7 @@ class Persons(Record):
     """Number of persons, fraction of women, ages [years], and skin tones, ITA [degrees]."""
 
     count: Annotated[int, Within(1, PERSONS)]
-    women: Share
+    women: TriangleGroup
     age: Annotated[Range, _between(18.0, 90.0)]
     tone: Annotated[Range, _between(DARKEST, LIGHTEST)]
 
@@ -168,9 +168,9 @@ class Persons(Record):
 class Degradations(Record):
     """Probabilities and amounts of blur, noise and compression of pictures."""
 
-    blurred: Share
-    noisy: Share
-    compressed: Share
+    blurred: TriangleGroup
+    noisy: TriangleGroup
+    compressed: TriangleGroup
     blur: Annotated[Range, _between(0.0, 20.0)]
     noise: Annotated[Range, _between(0.0, 100.0)]
     jpeg: Annotated[Range, _between(1.0, 95.0)]
@@ -184,7 +184,7 @@ class SampleTable(Record):
     letters: Annotated[Shares, _drawn_from(LETTERS)]
     expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
     units: Annotated[Shares, _drawn_from(_units)]
-    together: dict[Unit, dict[Unit, Share]]
+    together: dict[Unit, dict[Unit, TriangleGroup]]
     excluded: Excluded
     speech: Annotated[Shares, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides
@@ -192,7 +192,7 @@ class SampleTable(Record):
     head: HeadTurn
     camera: Camera
     persons: Persons
-    irises: Annotated[Shares, _drawn_from(IRIS_SHARES)]
+    irises: Annotated[Shares, _drawn_from(IRIS_FREQUENCIES)]
     cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
     shirts: Annotated[Shares, _drawn_from(SHIRTS)]

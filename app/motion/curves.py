@@ -3,7 +3,7 @@
 `solved(scene, ACTION_UNITS, activations)` is the inverse of the tables of sim/layers.py. A
 layer's controls add up, so it is a bounded least squares problem in each frame:
 
-    minimise |shares x - activations|^2,    0 <= x <= the controls' limits
+    minimise |weights x - activations|^2,    0 <= x <= the controls' limits
 
 Source: Stark and Parker 1995, "Bounded-variable least-squares", as implemented in scipy.
 """
@@ -18,7 +18,7 @@ import scipy
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.sim.controls import Controls
-from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
+from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, fraction_of_whole
 
 from ..errors import UserError
 from ..scenes import Scene
@@ -46,12 +46,12 @@ def solved(
     moved = _muscles_of(scene, layer)
     tables = moved.tables
     frames = np.stack([activations[name] for name in moved.lowest], axis=1)
-    shares = np.stack([tables.shares[name] for name in names])
+    weights = np.stack([tables.weights[name] for name in names])
     highest = np.array([scene.limits[name][1] for name in names])
     known = _known(names, tables, controls or {}, len(frames), highest)
-    rest = frames - _sums(known, shares, np.stack([tables.floors[name] for name in names]))
+    rest = frames - _sums(known, weights, np.stack([tables.floors[name] for name in names]))
     found, where = np.unique(rest.round(9), axis=0, return_inverse=True)
-    values = _fitted(shares, highest, found)[where.ravel()]
+    values = _fitted(weights, highest, found)[where.ravel()]
     counted = dict(zip(names, np.clip(known + values, 0.0, highest).T, strict=True))
     return {name: _as_set(name, counted, tables) for name in names}
 
@@ -91,7 +91,7 @@ def _known(
     for name, whole in tables.share_of.items():
         if name in set_to:
             pairs = zip(set_to[name], controls.get(whole, np.zeros(count)), strict=True)
-            set_to[name] = np.array([share_of_whole(value, of) for value, of in pairs])
+            set_to[name] = np.array([fraction_of_whole(value, of) for value, of in pairs])
     return np.clip(np.stack(list(set_to.values()), axis=1), 0.0, highest)
 
 
@@ -100,24 +100,24 @@ def _without_side(name: str) -> str:
     return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
 
 
-def _sums(values: Floats64, shares: Floats64, floors: Floats64) -> Floats64:
+def _sums(values: Floats64, weights: Floats64, floors: Floats64) -> Floats64:
     """Return the sums of the layer's values, shape (N, C), added up as in sim/controls.py."""
     least = np.zeros((len(values), floors.shape[1]))
     for value, floor in zip(values.T, floors, strict=True):
         np.maximum(least, np.outer(value, floor), out=least)
-    sums = values @ shares
+    sums = values @ weights
     return np.where(least > 0.0, np.maximum(sums, least), sums)
 
 
-def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
+def _fitted(weights: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     """Return the values (N, L) whose sums are nearest to the frames (N, C)."""
-    rays = _rays(shares)
-    strengths = np.linalg.norm(shares, axis=1)
+    rays = _rays(weights)
+    strengths = np.linalg.norm(weights, axis=1)
     reach = np.array([(strengths[ray] * highest[ray]).sum() for ray in rays])
-    directions = unit_vectors(np.stack([shares[ray].sum(axis=0) for ray in rays]))
+    directions = unit_vectors(np.stack([weights[ray].sum(axis=0) for ray in rays]))
     # A small penalty on values chooses a middle one among solutions that fit equally well.
     matrix = np.vstack([directions.T, 1e-3 * np.eye(len(rays))])
-    values = np.zeros((len(frames), len(shares)))
+    values = np.zeros((len(frames), len(weights)))
     for row, frame in zip(values, frames, strict=True):
         wanted = np.concatenate([frame, np.zeros(len(rays))])
         lengths = scipy.optimize.lsq_linear(matrix, wanted, (0.0, reach), method="bvls").x
@@ -128,11 +128,11 @@ def _fitted(shares: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     return values
 
 
-def _rays(shares: Floats64) -> list[list[int]]:
-    """Group controls with parallel shares (L, C), each group in order from weak to strong."""
-    strengths = np.linalg.norm(shares, axis=1)
+def _rays(weights: Floats64) -> list[list[int]]:
+    """Group controls with parallel weights (L, C), each group in order from weak to strong."""
+    strengths = np.linalg.norm(weights, axis=1)
     lengths = np.maximum(np.outer(strengths, strengths), 1e-30)
-    does_the_same = shares @ shares.T / lengths > 1.0 - 1e-9  # apart from their strength
+    does_the_same = weights @ weights.T / lengths > 1.0 - 1e-9  # apart from their strength
     rays: list[list[int]] = []
     for control in np.argsort(strengths, kind="stable").tolist():
         for ray in rays:

@@ -82,24 +82,24 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     the eyes in the picture.
     """
     positions = face.positions
-    ways = face.annotation.ways(positions)
+    paths = face.annotation.outline_paths(positions)
     corner_numbers = [36 - JAW_COUNT, 45 - JAW_COUNT]
     head_axes = face.bone_transforms()["cranium"][:3, :2]
     corner_heights = face.annotation.inner_points(positions)[corner_numbers] @ head_axes[:, 1]
-    seen = camera.project(ways.reshape(-1, 3)).reshape(*ways.shape[:3], 2)
+    seen = camera.project(paths.reshape(-1, 3)).reshape(*paths.shape[:3], 2)
     upright = camera.rotation @ head_axes
     aside = upright[:2, 0] / np.linalg.norm(upright[:2, 0])
     up = upright[:2, 1] / np.linalg.norm(upright[:2, 1])
     across = np.array([-up[1], up[0]])
     across *= np.sign(across @ aside) or 1.0  # to the subject's left
-    turn = np.linspace(0.0, 0.5 * np.pi, ways.shape[1])[:, None]
+    turn = np.linspace(0.0, 0.5 * np.pi, paths.shape[1])[:, None]
     halves = []
     for side, sign in enumerate((-1.0, 1.0)):
         outward = sign * across * np.cos(turn) - up * np.sin(turn)
         for _ in range(3):
             distances = (seen[side] * outward[:, None]).sum(axis=2)
             farthest = distances.argmax(axis=1)
-            line = _smoothed(ways[side, np.arange(len(farthest)), farthest])
+            line = _smoothed(paths[side, np.arange(len(farthest)), farthest])
             outward = _normals(camera.project(line), outward)
         line = _below(line, line @ head_axes[:, 1], float(corner_heights[side]))
         halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))

@@ -39,7 +39,7 @@ class Filling:
 
     @property
     def in_words(self) -> str:
-        """A line for the user that reports the filling."""
+        """Report the filling to the user in one line."""
         *most, last = self.openings
         names = f"{', '.join(most)} and {last} are" if most else f"{last} is"
         count = len(self.triangles)
@@ -95,13 +95,13 @@ def _filling(
     height = (upper - lower[::-1])[:, 1].mean()
     if height < 0.02 * width:  # shut: no triangle lies in it
         return none
-    middles = vertices[faces].mean(axis=1)
-    near = np.flatnonzero(np.linalg.norm(middles - centre, axis=1) < 0.6 * width)
+    centroids = vertices[faces].mean(axis=1)
+    near = np.flatnonzero(np.linalg.norm(centroids - centre, axis=1) < 0.6 * width)
     used = np.unique(faces[near])
     ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
     for scale in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
         shrunk = centre + scale * (edge - centre)
-        inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
+        inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
         # Add triangles outside the curve, between it and a side of the polygon.
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
@@ -126,14 +126,14 @@ def _sheet(
     corners = vertices[faces]
     if not covering(corners, centre).any():
         return none
-    middles = corners.mean(axis=1)
+    centroids = corners.mean(axis=1)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     turned = 1.0 if normals[covering(corners, centre), 2].mean() > 0.0 else -1.0
-    is_near = (turned * normals[:, 2] > 0.0) & (middles[:, 2] > centre[2] - COVER_DEPTH)
-    near = np.flatnonzero(is_near & (np.linalg.norm(middles - centre, axis=1) < 0.6 * width))
-    for share in (1.0, 0.9, 0.8):  # smaller curves too, because margins of lids are rounded
-        shrunk = centre + share * (edge - centre)
-        inside = near[_is_inside(middles[near, :2], shrunk[:, :2])]
+    is_near = (turned * normals[:, 2] > 0.0) & (centroids[:, 2] > centre[2] - COVER_DEPTH)
+    near = np.flatnonzero(is_near & (np.linalg.norm(centroids - centre, axis=1) < 0.6 * width))
+    for size in (1.0, 0.9, 0.8):  # smaller curves too, because margins of lids are rounded
+        shrunk = centre + size * (edge - centre)
+        inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
         found = _without_teeth(faces, inside)
         if _is_disc(faces[found]):
             border = vertices[np.unique(faces[found])]

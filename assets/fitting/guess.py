@@ -95,7 +95,7 @@ def placing(known: Known) -> Similarity:
 
 
 def _laid(known: Known) -> tuple[Similarity, Floats64]:
-    """Find the similarity from known landmarks to the built-in ones, and errors [mm], (n,)."""
+    """Find the similarity from known landmarks to built-in ones, and its errors [mm], (n,)."""
     head = load("head")
     indices = sorted(known)
     own = head.vertices[head.landmarks[indices]]
@@ -112,8 +112,8 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
     The skin is the piece of the mesh under most points; eyeballs, teeth and hair are left out.
     vertices, given: in the face space [mm], (V, 3) and (m, 3).
     """
-    middles = vertices[faces].mean(axis=1)
-    under = scipy.spatial.cKDTree(middles).query(given)[1]
+    centroids = vertices[faces].mean(axis=1)
+    under = scipy.spatial.cKDTree(centroids).query(given)[1]
     piece = pieces_of(faces, len(vertices))[faces[:, 0]]
     is_skin = piece == np.bincount(piece[under]).argmax()
     if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
@@ -121,7 +121,7 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
     face_radii = np.array([60.0, 90.0, 120.0])  # [mm] around the points in x, y and z
     low = given.min(axis=0) - face_radii
     high = given.max(axis=0) + face_radii
-    is_near = ((middles > low) & (middles < high)).all(axis=1)
+    is_near = ((centroids > low) & (centroids < high)).all(axis=1)
     return np.ascontiguousarray(faces[is_skin & is_near])
 
 

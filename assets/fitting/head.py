@@ -140,24 +140,24 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
         triangles.
     """
     indices, points = marks
-    places = mesh.vertices[indices] if points is None else points
+    landmark_points = mesh.vertices[indices] if points is None else points
     try:
         return fit(mesh, indices, points=points)
     except CoveredError as error:
         reason = error
-    filling = filling_of(mesh, indices, places)
+    filling = filling_of(mesh, indices, landmark_points)
     if filling is not None:
         opened = mesh.without(filling.triangles)
         fitted = _fit_shut_or_not(opened, marks_of(opened), marks_of)
         return replace(fitted, notes=(*fitted.notes, filling.in_words))
     if not isinstance(reason, ShutMouthError):
         raise reason
-    parted = lips_parted(mesh, places)
+    parted = lips_parted(mesh, landmark_points)
     if parted is not None:
         parted_indices, parted_points = marks_of(parted)
         with contextlib.suppress(ShutMouthError):
             return fit(parted, parted_indices, points=parted_points)
-    cut = lip_cut(mesh, indices, places)
+    cut = lip_cut(mesh, indices, landmark_points)
     if cut is None:
         raise reason
     opened = cut.applied(mesh)

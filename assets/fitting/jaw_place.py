@@ -69,10 +69,10 @@ def opening_as_people(
     return {**rig, "jaw": jaw}
 
 
-def _spread(places: Floats64, faces: Integers32) -> Floats64:
+def _spread(points: Floats64, faces: Integers32) -> Floats64:
     """Return points on triangles, (n, 3), so dense that every section contains some."""
     weights = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
-    corners = places[faces]
+    corners = points[faces]
     return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in weights])
 
 

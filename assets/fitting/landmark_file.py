@@ -98,9 +98,12 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
         raise AssetError(f"{named(path)}: {error}") from None
 
 
-def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
-    """Return the text of a landmark file; places: number -> point; missing numbers become null."""
-    rows = ",\n    ".join(json.dumps(places.get(number)) for number in range(COUNT))
+def landmarks_text(points: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
+    """Return the text of a landmark file, with null for missing landmarks.
+
+    points: number of the landmark -> point. guessed: numbers of guessed landmarks.
+    """
+    rows = ",\n    ".join(json.dumps(points.get(number)) for number in range(COUNT))
     return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
 
 
@@ -121,7 +124,7 @@ def _document(path: Path) -> Any:
 
 
 def _all_in(document: Any) -> list[Any]:
-    """Find the 68 entries: the document itself, its list KEY, or its first list of 68 entries."""
+    """Find the 68 entries: the list KEY, the first list of 68 entries, or the document itself."""
     entries = [document]
     if isinstance(document, dict):
         entries = [document[KEY]] if KEY in document else list(document.values())
@@ -167,9 +170,9 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     """Find the vertices nearest to points, (68,); a point off the mesh raises AssetError."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
-    most_share = 0.05  # greatest distance from the mesh / distance of the outer eye corners
+    greatest_ratio = 0.05  # greatest distance from the mesh / distance of the outer eye corners
     outer_eye_corners = [36, 45]
-    allowed = most_share * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
+    allowed = greatest_ratio * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
     if distance.max() > allowed:
         place = int(distance.argmax())
         raise AssetError(

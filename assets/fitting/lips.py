@@ -72,7 +72,7 @@ class LipCut:
 
     @property
     def in_words(self) -> str:
-        """A line for the user that reports the cut."""
+        """Report the cut to the user in one line."""
         return f"its lips were sealed: they are cut apart, {len(self.sources)} vertices are doubled"
 
     def applied(self, mesh: Mesh) -> Mesh:
@@ -192,5 +192,5 @@ def _distances(points: Floats64, line: Floats64) -> Floats64:
     """Return distances (n,) of points (n, 3) from a polyline (m, 3)."""
     place_count = 33  # points on each segment of the line
     steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
-    places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
-    return np.asarray(scipy.spatial.cKDTree(places).query(points)[0])
+    samples = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
+    return np.asarray(scipy.spatial.cKDTree(samples).query(points)[0])

@@ -150,7 +150,7 @@ def place_parts(
     """Fit the parts inside the built-in head into another head.
 
     warp: from the built-in head to the other head. jaws: motions of the mandible, see
-    `opened_jaws`. kept_bone: parts of this bone are not changed.
+    `opened_jaws`. kept_bone: bone whose parts are not changed.
     """
     mouth = _mouth_of(known, fitted, warp)
     rises = _rises_of_jaws(known, fitted.landmarks, mouth)

@@ -2,9 +2,10 @@
 
 A vertex takes the texture coordinates of its foot, the nearest point on the warped built-in skin.
 This is right on a face, but wrong where one head has folds that the other lacks: in nostrils,
-behind ears, in the mouth. So a farther foot is trusted less, and a foot on an ear or in a nostril
-is not trusted at all. Springs spread the vertices between trusted ones evenly. Because the border
-of such a patch is fixed, the patch does not overlap itself (Tutte 1963, "How to draw a graph").
+behind ears, in the mouth. So a farther foot gets a smaller weight, and a foot on an ear or in a
+nostril gets none. Springs spread vertices without weight evenly between the others. Because the
+border of such a patch is fixed, the patch does not overlap itself (Tutte 1963, "How to draw a
+graph").
 
 A mesh with a texture keeps its texture coordinates. The maps of the built-in head (wrinkles, and
 segments such as nose and lips) are then drawn again, texel by texel, in the layout of this texture.

@@ -80,9 +80,9 @@ class ThinPlateSpline:
     def __init__(self, source: Floats64, target: Floats64, give: float | Floats64 = 0.0) -> None:
         """Fit the deformation from `source` to `target`, both (n, 3).
 
-        Of equal points in `source`, the first counts. give: smoothing, a number or (n,) [unit of
-        `source`]; with more smoothing, points may miss their targets by more. If all points lie in
-        one plane, raises LinAlgError.
+        If points in `source` are equal, only the first is used. give: smoothing, a number or (n,)
+        [unit of `source`]; with more smoothing, points may miss their targets by more. If all
+        points lie in one plane, raises LinAlgError.
         """
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
         self._source = np.asarray(source[first], dtype=np.float64)

@@ -144,9 +144,9 @@ def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> No
     np.maximum(covered, np.clip(fine + share_between * soft, 0.0, 0.92), out=covered)
 
 
-def _on_texture(places: Floats64, side: float) -> Floats64:
+def _on_texture(points: Floats64, side: float) -> Floats64:
     """Map points (x, y) seen from the front [mm], (n, 2), to columns and rows, 0 to 1, (n, 2)."""
-    across, down = _map()(places).T
+    across, down = _map()(points).T
     return np.stack([0.5 + side * (across - 0.5), 1.0 - down], axis=-1)
 
 

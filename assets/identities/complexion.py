@@ -278,9 +278,9 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
 @lru_cache(maxsize=2)
 def _texels_of(*segments: Segment) -> Integers64:
     """Return flat indices of the texels in some segments of the built-in head, (n,)."""
-    places = np.flatnonzero(np.isin(load("head").segments, segments))
-    places.flags.writeable = False
-    return places
+    texels = np.flatnonzero(np.isin(load("head").segments, segments))
+    texels.flags.writeable = False
+    return texels
 
 
 def _with_hair(

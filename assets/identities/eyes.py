@@ -21,7 +21,7 @@ from ..data_files import read_arrays
 from ..loading import load
 from ..model import Eye, Part
 from ..smooth import smooth_step
-from .population import DARKEST, IRIS_SHARES, LIGHTEST, ONLY_BROWN
+from .population import DARKEST, IRIS_FREQUENCIES, LIGHTEST, ONLY_BROWN
 
 
 class Iris(NamedTuple):
@@ -73,10 +73,10 @@ def with_irises(
 ) -> tuple[Part, ...]:
     """Replace the eyeballs among parts by eyeballs with irises of a colour.
 
-    name: a colour of IRIS_SHARES; any other raises ValueError.
+    name: a colour of IRIS_FREQUENCIES; any other raises ValueError.
     """
-    if name not in IRIS_SHARES:
-        raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_SHARES)}")
+    if name not in IRIS_FREQUENCIES:
+        raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_FREQUENCIES)}")
     painted = read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0)
     found = {}
     for eye, colours in zip(eyes, painted, strict=True):
@@ -92,7 +92,7 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
     """
     # Exponents of `darker` for the flesh at the inner corner, the wet edges of the lids, the white.
     exponents = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
-    white_share = np.array([0.15, 0.19, 0.25])
+    white_factor = np.array([0.15, 0.19, 0.25])
     if (darker == 1.0).all():
         return tuple(parts)
     found = {}
@@ -102,7 +102,7 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
     for eye in eyes:
         part = _eyeball(parts, eye)
         is_white = (_aside(part, eye) > 1.05)[:, None]
-        found[part.name] = _times(part.colours, np.where(is_white, darker**white_share, 1.0))
+        found[part.name] = _times(part.colours, np.where(is_white, darker**white_factor, 1.0))
     return tuple(
         replace(part, colours=found[part.name]) if part.name in found else part for part in parts
     )

@@ -1,4 +1,4 @@
-"""Draw features that a texture shows, by sex and age: brows, lids, lips, hair, irises."""
+"""Choose random features of a texture by sex and age: brows, lids, lips, hair, irises."""
 
 from __future__ import annotations
 
@@ -77,13 +77,13 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         pale_lips=pale,
         relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
         fair=fair if angle > fair_skin else 0.0,
-        grey=_share_of_grey(years, angle, grey),
+        grey=_fraction_of_grey(years, angle, grey),
         hairline=hairline,
         iris=iris,
     )
 
 
-def _share_of_grey(years: float, angle: float, early: float) -> float:
+def _fraction_of_grey(years: float, angle: float, early: float) -> float:
     """Compute the fraction of grey in a person's hair, 0 to 0.95.
 
     Between 45 and 65 years the mean is 0.27. Persons with dark skin turn grey later (Panhard,

@@ -41,7 +41,7 @@ class Cut:
     behind: distance behind the hairline at which strands reach their full length [mm].
     knot: half the width of the knot or tail into which hair is tied [mm]; 0: hair is not tied.
     tail: length of a hanging tail [mm]; 0: tied hair is wound into a knot.
-    aside: how far a tail falls to the subject's right, per millimetre down.
+    aside: distance by which a tail hangs farther to the subject's right, per millimetre down.
     """
 
     whorl: tuple[float, float, float]
@@ -212,8 +212,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # Locks at the front are at least this long; longer cuts are combed over the forehead.
     growth = TIED if cut.knot else replace(SHORT, least=min(2.0 + 0.15 * length * cut.top, 5.5))
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
-    upward_share = 0.8
-    hangs = (normals[:, 1] < upward_share) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
+    upward_fraction = 0.8
+    hangs = (normals[:, 1] < upward_fraction) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), hair, locks_on(hair, growth)
 
@@ -262,9 +262,11 @@ def _swirled(
 
 def _lengths(cut: Cut, points: Points, normals: Points, behind: Floats64) -> Floats64:
     """Return lengths of strands [mm], (n,); they are uneven, as if cut by hand."""
-    uneven_share = 0.0 if cut.knot else 0.06
+    uneven_fraction = 0.0 if cut.knot else 0.06
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
-    long *= smooth_step(0.0, cut.behind, behind) * (1.0 + uneven_share * waves(points, 0.21)[:, 0])
+    long *= smooth_step(0.0, cut.behind, behind) * (
+        1.0 + uneven_fraction * waves(points, 0.21)[:, 0]
+    )
     return np.asarray(long)
 
 
@@ -310,9 +312,9 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     """
     height, width = behind.shape
 
-    def far(places: Points) -> Floats64:
+    def far(uv: Points) -> Floats64:
         """Return distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
-        at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
+        at = [(1.0 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
     used, number = np.unique(faces[(far(uv) > 0.0)[faces].any(axis=1)], return_inverse=True)
@@ -321,16 +323,16 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     uv = uv[used]
     covers = np.zeros(len(points))
     level_count = 2  # each level cuts every triangle into four
-    bulge_share = 0.75  # fraction of the distance to the tangent planes at an edge's ends
+    bulge_fraction = 0.75  # fraction of the distance to the tangent planes at an edge's ends
     for _ in range(level_count):
         cut = quarter(faces, len(points))
         faces = cut.faces
         ends = points[cut.edges]
         middle = ends.mean(axis=1, keepdims=True)
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
-        bulge = -bulge_share * (above * normals[cut.edges]).mean(axis=1)
+        bulge = -bulge_fraction * (above * normals[cut.edges]).mean(axis=1)
         # Where skin is concave, unrefined triangles lie above the refined ones.
-        hollow = bulge_share * np.maximum(above, 0.0).mean(axis=(1, 2))
+        hollow = bulge_fraction * np.maximum(above, 0.0).mean(axis=(1, 2))
         covers = np.concatenate([covers, covers[cut.edges].mean(axis=1) + hollow])
         points = np.vstack([points, middle[:, 0] + bulge])
         normals = np.vstack([normals, unit_vectors(normals[cut.edges].mean(axis=1))])

@@ -68,7 +68,7 @@ def _yielding() -> tuple[Floats32, Floats32]:
     for side in EYES:
         edge = _edge(head.vertices, side)
         along = _nearest(head.vertices, edge)
-        offset = head.vertices - _shares(along) @ edge
+        offset = head.vertices - _edge_weights(along) @ edge
         away = np.linalg.norm(offset, axis=1)
         is_seen = (offset[:, 1] > -0.1) & (offset[:, 2] > -4.0)
         is_between = (along > 0.15) & (along < 0.95)
@@ -93,7 +93,7 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     texels = near.texels
     along = near.along
     places = texels.interpolate(person.vertices[person.faces])
-    offset = places - near.shares @ _edge(person.vertices, side)
+    offset = places - near.edge_weights @ _edge(person.vertices, side)
     away = np.sqrt((offset**2).sum(axis=1))
     upward = offset[:, 1] / np.maximum(away, 0.1)
     is_lid = smooth_step(0.15, 0.6, upward) * smooth_step(0.03, 0.15, along)
@@ -120,12 +120,12 @@ class _About(NamedTuple):
 
     along: position of this point along the edge of the built-in head's lid, (n,), from 0 at the
         inner corner to 1 at the outer one.
-    shares: weights of the edge's vertices at this point, (n, POINTS).
+    edge_weights: weights of the edge's vertices at this point, (n, POINTS).
     """
 
     texels: Texels
     along: Floats64
-    shares: Floats64
+    edge_weights: Floats64
 
 
 def _edge(vertices: Floats64, side: str) -> Floats64:
@@ -133,7 +133,7 @@ def _edge(vertices: Floats64, side: str) -> Floats64:
     return vertices[load("head").rings[f"eye_2_{side}"][:POINTS]]
 
 
-def _shares(along: Floats64, derivative: int = 0) -> Floats64:
+def _edge_weights(along: Floats64, derivative: int = 0) -> Floats64:
     """Return weights of the edge's vertices, or derivatives, along its curve, (n, POINTS).
 
     The curve is a smoothing spline that passes near the vertices. A curve through them would have
@@ -156,9 +156,9 @@ def _nearest(places: Floats64, points: Floats64) -> Floats64:
     points: vertices of the edge [mm], (POINTS, 3).
     """
     steps = np.linspace(0.0, 1.0, STEPS)
-    along = steps[scipy.spatial.cKDTree(_shares(steps) @ points).query(places)[1]]
+    along = steps[scipy.spatial.cKDTree(_edge_weights(steps) @ points).query(places)[1]]
     for _ in range(2):  # by Newton's method
-        offset, first, second = (_shares(along, n) @ points for n in range(3))
+        offset, first, second = (_edge_weights(along, n) @ points for n in range(3))
         offset = places - offset
         slope = (offset * first).sum(axis=1)
         bend = (offset * second).sum(axis=1) - (first**2).sum(axis=1)
@@ -171,17 +171,17 @@ def _about(side: str, size: int) -> _About:
     head = load("head")
     reach = 11.0  # [mm] around the edge of the lid, beyond all folds
     points = _edge(head.vertices, side)
-    curve = scipy.spatial.cKDTree(_shares(np.linspace(0.0, 1.0, STEPS)) @ points)
+    curve = scipy.spatial.cKDTree(_edge_weights(np.linspace(0.0, 1.0, STEPS)) @ points)
     is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
     corners = head.uv[head.face_uv].astype(np.float64)
     corners[~is_near] = -1.0  # outside the map
     texels = Texels.within(corners, (size, size))
     places = texels.interpolate(head.vertices[head.faces])
     along = _nearest(places, points)
-    shares = _shares(along)
-    offset = places - shares @ points
+    edge_weights = _edge_weights(along)
+    offset = places - edge_weights @ points
     kept = (np.linalg.norm(offset, axis=1) < reach) & (offset[:, 1] > -0.2)
     texels = Texels(
         texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
     )
-    return _About(texels, along[kept], shares[kept])
+    return _About(texels, along[kept], edge_weights[kept])

@@ -48,7 +48,7 @@ class Lines(NamedTuple):
     - dip: how far lines of the forehead hang down at the midline [mm].
     - broken: how much of the lines is missing, 0 to 1.
     - frown: number of upright lines between the brows.
-    - uneven: how much shallower than the deepest the other upright lines are, 0 to 1.
+    - uneven: how much shallower the other upright lines are than the deepest one, 0 to 1.
     - feet: number of crow's feet on each side.
     - fan: part of the fan beside the eye that has crow's feet.
     - reach: length of the longest crow's foot [mm].

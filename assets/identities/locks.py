@@ -31,8 +31,8 @@ class Growth:
     count: number of locks, which are evenly spaced in dense hair.
     root: where locks begin, as a fraction of the longest strands of the layers.
     tip: where locks end on average, as a fraction of the longest strands.
-    least, longest: length of strands that locks assume at least, and greatest length of locks [mm].
-    spread: sideways deviation of tips, as a fraction of the length.
+    least: length of strands that locks assume at least [mm]. longest: greatest length of locks
+    [mm]. spread: sideways deviation of tips, as a fraction of the length.
     half: half the width of the widest lock at its root [mm].
     lying: how flat locks lie on the layers, 0 to 1.
     radius: radius of the head around which locks bend [mm].
@@ -95,10 +95,10 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     """Make the locks on layers of hair; they are wide in dense hair, and single hairs at hems."""
     assert hair.striation is not None
     chances = _chances(growth.count)
-    faces, shares = _places(hair, growth.fringe, chances[:, :3])
+    faces, barycentric = _places(hair, growth.fringe, chances[:, :3])
     corners = hair.faces[faces]
     columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 2:6], hair.colours])
-    at = sum(shares[:, k, None] * columns[corners[:, k]] for k in range(3))
+    at = sum(barycentric[:, k, None] * columns[corners[:, k]] for k in range(3))
     root, normal, way, dense, colour = np.split(at, [3, 6, 9, 10], axis=1)
     normal = unit_vectors(normal)
     long = np.sqrt(_dot(way, way))
@@ -121,7 +121,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     # Locks bend around the head, so their tips hang.
     bend = length**2 / (2.0 * growth.radius) * normal
     start = root + (growth.root - MEAN) * way
-    middles = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
+    midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
     thin *= 1.0 + 3.0 * upright
@@ -137,11 +137,11 @@ def locks_on(hair: Part, growth: Growth) -> Part:
         whole = both.reshape(len(both), 2 * STATIONS, -1)[:, :CORNERS]
         return np.ascontiguousarray(whole.reshape(len(both) * CORNERS, -1), np.float32)
 
-    every = np.broadcast_to(normal[:, None], middles.shape)
+    every = np.broadcast_to(normal[:, None], midpoints.shape)
     return replace(
         hair,
         name=hair.name + "_locks",
-        vertices=rows(middles + sides, middles - sides),
+        vertices=rows(midpoints + sides, midpoints - sides),
         normals=rows(every),
         faces=_ribbons(growth.count),
         colours=rows(np.clip(light * colour[:, None], 0.0, 1.0)),
@@ -179,8 +179,8 @@ def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, F
     ends = np.cumsum(weights)
     faces = np.searchsorted(ends, chances[:, 0] * ends[-1], side="right")
     root, side = np.sqrt(chances[:, 1]), chances[:, 2]
-    shares = np.stack([1.0 - root, root * (1.0 - side), root * side], axis=1)
-    return np.minimum(faces, len(weights) - 1), shares
+    barycentric = np.stack([1.0 - root, root * (1.0 - side), root * side], axis=1)
+    return np.minimum(faces, len(weights) - 1), barycentric
 
 
 def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:

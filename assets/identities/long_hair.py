@@ -59,7 +59,7 @@ def falling_hair(
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
     roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
     level_of_widest = np.array([0.0, -0.1, 0.0])  # strands leave the head a little below its centre
-    ways = _turned(roots, unit_vectors(level + level_of_widest), over)
+    directions = _turned(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
     # Beside the face the outer surface of the hair curves inward to its inner surface.
@@ -73,7 +73,7 @@ def falling_hair(
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
-    places = middle + (_reach(ways, solid) + clearance + thick)[..., None] * ways
+    places = middle + (_reach(directions, solid) + clearance + thick)[..., None] * directions
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
@@ -134,32 +134,33 @@ def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats6
     return 1.0 - tip_curving * low**1.6, tip_thinning * low**2
 
 
-def _reach(ways: Floats64, solid: Floats64) -> Floats64:
+def _reach(directions: Floats64, solid: Floats64) -> Floats64:
     """Return distances of the skin from the head's centre [mm], (n, m), as a soft maximum.
 
-    ways: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm], (k, 3).
+    directions: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm],
+    (k, 3).
     """
     far = np.linalg.norm(solid, axis=1)
     sharpness = 120.0  # exponent of the weights; with more, fewer directions count
-    weights = ways.reshape(-1, 3) @ (solid / far[:, None]).T
+    weights = directions.reshape(-1, 3) @ (solid / far[:, None]).T
     weights -= 1.0  # in place: there are a million
     weights *= sharpness
     np.exp(weights, out=weights)
     power = 24.0  # of the power mean over distances: high, so that the farthest point counts most
     sums = weights @ np.column_stack([far**power, np.ones(len(far))])
-    mean = (sums[:, 0] / sums[:, 1]).reshape(ways.shape[:2])
+    mean = (sums[:, 0] / sums[:, 1]).reshape(directions.shape[:2])
     return np.asarray(mean ** (1.0 / power))
 
 
-def _turned(start: Floats64, end: Floats64, shares: Floats64) -> Floats64:
+def _turned(start: Floats64, end: Floats64, fractions: Floats64) -> Floats64:
     """Interpolate between unit vectors along great circles (slerp).
 
-    start, end: pairs of unit vectors, (n, 3), neither equal nor opposite. shares: fractions of the
-    angle between them, (m,). Returns unit vectors, (n, m, 3).
+    start, end: pairs of unit vectors, (n, 3), neither equal nor opposite. fractions: fractions of
+    the angle between them, (m,). Returns unit vectors, (n, m, 3).
     Source: Shoemake 1985, "Animating rotation with quaternion curves".
     """
     angle = np.arccos((start * end).sum(axis=1))[:, None]
-    parts = np.sin((1.0 - shares) * angle), np.sin(shares * angle)
+    parts = np.sin((1.0 - fractions) * angle), np.sin(fractions * angle)
     before, after = (part / np.sin(angle) for part in parts)
     return np.asarray(before[..., None] * start[:, None] + after[..., None] * end[:, None])
 
@@ -171,8 +172,8 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     """
     points = scalp.points
     out = -unit_vectors(np.array([cut.whorl]))[0]
-    ways = unit_vectors(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
-    root = points[np.argmax(ways @ out)]
+    directions = unit_vectors(points - 0.5 * (points.min(axis=0) + points.max(axis=0)))
+    root = points[np.argmax(directions @ out)]
     place_count = 40
     t = np.linspace(0.0, 1.0, place_count)[:, None]
     if cut.tail:
@@ -181,8 +182,8 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         free_distance = 75.0  # [mm] from the beginning of a tail to its full width
         tie_distance = 28.0  # [mm] from the beginning of a tail to its tie
         free = smooth_step(tie_distance, free_distance, far)
-        ways = _falling(far, out, cut.aside, root_depth, free_distance)
-        line = root - root_depth * out + np.cumsum(ways * far[1], axis=0)
+        directions = _falling(far, out, cut.aside, root_depth, free_distance)
+        line = root - root_depth * out + np.cumsum(directions * far[1], axis=0)
         tied_width = 0.45  # thickness at the tie, as a fraction of the full thickness
         thick = tied_width + (1.0 - tied_width) * free
         root_width = 1.0  # thickness on the scalp, as a fraction of the full thickness
@@ -198,7 +199,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     else:  # a ball, sampled from its rim on the scalp to its outer pole
         rise = -1.0 + (0.498 * np.pi + 1.0) * t
         thick = np.cos(rise)
-        ways = out[None]
+        directions = out[None]
         free = np.ones_like(t)
         knot_height = 0.8  # fraction of half the knot's width
         dimple_depth = 0.12  # fraction of half the knot's width
@@ -212,8 +213,8 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     place = np.linspace(0.0, 2.0 * np.pi, strand_count)[:, None, None]
     groove = free * (0.5 + 0.5 * np.cos(count * place)) ** 3
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
-    upward = unit_vectors(np.cross(RIGHT, ways))
-    ring = np.cos(turn) * upward + np.sin(turn) * np.cross(ways, upward)
+    upward = unit_vectors(np.cross(RIGHT, directions))
+    ring = np.cos(turn) * upward + np.sin(turn) * np.cross(directions, upward)
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
     places[-1] = places[0]  # to the bit, or light shines through the seam
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie

@@ -45,7 +45,7 @@ def mask(person: Person, colour: Colour) -> Part:
     inner = axis + level + (reach - thickness)[..., None] * outward
     is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
     shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(SHAPE)])
-    shares = _mandible_shares(person, outer)
+    shares = _mandible_weights(person, outer)
     cover = _Piece(sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
     return _joined([cover, *_loops(person, outer, shares, colour)])
 
@@ -172,7 +172,7 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
     return height, crease * (0.35 + 0.65 * flat)
 
 
-def _mandible_shares(person: Person, sheet: Floats64) -> Floats64:
+def _mandible_weights(person: Person, sheet: Floats64) -> Floats64:
     """Return weights of the mandible's motion at the sheet's vertices, (r, c).
 
     They are the weights of the skin, smoothed across the lips.

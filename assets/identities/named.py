@@ -16,7 +16,7 @@ from .space import Identity, Sex, sample_identity
 
 
 class _Known(NamedTuple):
-    """A named person: the face of a number (`seed`) with chosen sex, age, colours and cut."""
+    """A named person: the face of number `seed`, with chosen sex, age, colours and cut."""
 
     seed: int
     sex: Sex
@@ -41,7 +41,7 @@ class Colours:
 
     angle: float  # skin tone, ITA [deg]
     blood: float  # amount of blood in the skin, relative to most skin of this tone
-    irises: str  # a colour of IRIS_SHARES
+    irises: str  # a colour of IRIS_FREQUENCIES
     features: Features
 
 

@@ -39,7 +39,7 @@ class Person(FittedHead):
     """A head with the triangles of the built-in head. It adds these fields to a fitted head:
 
     - mandible_weight, jaw_axis, anatomy: as in `Head`.
-    - mirror: as in the built-in head, even if the left and the right half differ.
+    - mirror: as in the built-in head, although the left and the right half may differ.
     - identity: weights of the modes, and features.
     - in_tone: makes the albedo (H, W, 3) for another skin tone, ITA [deg].
     """
@@ -88,8 +88,8 @@ def _made(identity: Identity) -> Person:
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = without_ridges(_resting_face(known, bent, eyes, identity))
-    lid_shares = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
-    vertices = lids_on_eyes(known, bent, eyes, lid_shares)
+    lid_fractions = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
+    vertices = lids_on_eyes(known, bent, eyes, lid_fractions)
     neck = vertices[known.anatomy["menton"]], identity.sex
     vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
@@ -162,13 +162,13 @@ def _resting_face(
     """Move lids, corners of the mouth and brows to an identity's rest; returns vertices (V, 3)."""
     x = vertices.copy()
     lower_lid_height = -0.96  # above the pupil, in radii of the iris
-    row_shares = (1.0, 1.0, 1.0, 0.7, 0.25)  # weights of the rings around the eye in this motion
+    row_weights = (1.0, 1.0, 1.0, 0.7, 0.25)  # weights of the rings around the eye in this motion
     for eye in eyes:
         upper = 1.0 - identity.covered / eye.iris_radius
         for lid, height in (("superius", upper), ("inferius", lower_lid_height)):
             middle = vertices[known.anatomy[f"palpebrale_{lid}_{eye.name}"]]
             moved = eye.centre[1] + height * eye.iris_radius - middle[1]
-            for row, weight in enumerate(row_shares):
+            for row, weight in enumerate(row_weights):
                 ring = known.rings[f"eye_{row}_{eye.name}"]
                 inner, outer = vertices[ring[[0, len(ring) // 2]]]
                 along = (vertices[ring, 0] - inner[0]) / (outer[0] - inner[0])

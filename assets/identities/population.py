@@ -24,7 +24,7 @@ DARKEST = -55.0
 ONLY_BROWN = 28.0  # ITA [deg] below which blue eyes are rare
 YOUNGEST = 20.0  # [years]
 OLDEST = 75.0
-IRIS_SHARES = MappingProxyType(
+IRIS_FREQUENCIES = MappingProxyType(
     {"brown": 0.27, "hazel": 0.18, "green": 0.13, "blue": 0.31, "grey": 0.11}
 )
 CUTS_OF_WOMEN = MappingProxyType(
@@ -63,7 +63,7 @@ class Population:
     women: float = 0.5
     ages: tuple[float, float] = (YOUNGEST, OLDEST)
     tones: tuple[float, float] = (DARKEST, LIGHTEST)
-    irises: Mapping[str, float] = field(default_factory=lambda: IRIS_SHARES)
+    irises: Mapping[str, float] = field(default_factory=lambda: IRIS_FREQUENCIES)
     cuts_of_women: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_WOMEN)
     cuts_of_men: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_MEN)
 
@@ -72,21 +72,21 @@ EVERYBODY = Population()
 
 
 def drawn_irises(
-    random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
+    random: np.random.Generator, angle: float, frequencies: Mapping[str, float] = IRIS_FREQUENCIES
 ) -> str:
     """Choose a random colour of eyes for a skin tone; angle: ITA [deg].
 
-    shares: frequencies with very light skin. With darker skin, green, blue and grey eyes become
-    rare first, then hazel eyes.
+    frequencies: frequencies with very light skin. With darker skin, green, blue and grey eyes
+    become rare first, then hazel eyes.
     """
     # ITA [deg] up to which nobody has such eyes, and from which their frequency is full.
     fades = {"brown": (-90.0, -80.0), "hazel": (-5.0, 45.0)}
     pale_fade = 15.0, 50.0
     weights = {
-        name: share * float(smooth_step(*fades.get(name, pale_fade), np.array(angle)))
-        for name, share in shares.items()
+        name: frequency * float(smooth_step(*fades.get(name, pale_fade), np.array(angle)))
+        for name, frequency in frequencies.items()
     }
-    weights["brown"] = weights.get("brown", 0.0) + sum(shares.values()) - sum(weights.values())
+    weights["brown"] = weights.get("brown", 0.0) + sum(frequencies.values()) - sum(weights.values())
     names = list(weights)
-    chances = np.array([weights[name] for name in names]) / sum(shares.values())
+    chances = np.array([weights[name] for name in names]) / sum(frequencies.values())
     return names[int(random.choice(len(names), p=chances))]

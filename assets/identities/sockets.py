@@ -23,7 +23,7 @@ from ..loading import load
 class _Sockets(NamedTuple):
     """The skin between upper lids and brows, and its E edges that run down to the lids.
 
-    vertex: numbers of its vertices, (n,).
+    vertex: indices of its vertices, (n,).
     bends: matrix from all vertices to the vectors of bending at the edges, (E, V).
     outward: unit normals of the skin at the edges, (E, 3).
     pulls: motion of each vertex that flattens an edge [mm/rad], (n, E).

@@ -86,7 +86,7 @@ class Identity:
     - larynx: how far the larynx stands out [mm].
     - sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a
       face of usual width.
-    - lines: expression lines; None: those of the built-in head.
+    - lines: expression lines; None: the lines of the built-in head.
     """
 
     sex: Sex
@@ -106,11 +106,11 @@ class Identity:
     sternomastoid: float = 0.0
     lines: Lines | None = None
 
-    def scaled(self, share: float) -> Identity:
-        """Scale the shape's differences from the mean of people by `share`; 0 gives the mean."""
+    def scaled(self, factor: float) -> Identity:
+        """Scale the shape's differences from the mean of people by `factor`; 0 gives the mean."""
         kinds = (self.weights, self.unevenness)
-        weights, unevenness = (tuple(share * weight for weight in kind) for kind in kinds)
-        return replace(self, weights=weights, unevenness=unevenness, brows=share * self.brows)
+        weights, unevenness = (tuple(factor * weight for weight in kind) for kind in kinds)
+        return replace(self, weights=weights, unevenness=unevenness, brows=factor * self.brows)
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
@@ -195,12 +195,14 @@ class PersonSpace:
         """
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)
-        middles = np.array([0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()])
+        mean_measures = np.array(
+            [0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()]
+        )
         surface = np.array([found[code] - PRESSED.get(code, 0.0) for code in NORMS])
         means = np.array([sample.mean for sample in norms.values()])
         deviations = np.array([sample.deviation for sample in norms.values()])
         rows = self.slopes / deviations[:, None]
-        return rows, (middles - surface) / deviations, (means - middles) / deviations
+        return rows, (mean_measures - surface) / deviations, (means - mean_measures) / deviations
 
 
 @lru_cache(maxsize=1)

@@ -116,15 +116,15 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
     return _joined(tubes, frame)
 
 
-def _in_front(places: Floats64, lens: Floats64, cornea: float) -> Floats64:
+def _in_front(points: Floats64, lens: Floats64, cornea: float) -> Floats64:
     """Lift points (x, y) of a frame, (n, 2), to its surface, which is curved and tilted, (n, 3).
 
     lens: centre of the left lens (x, y). cornea: z of the corneas. All lengths are in [mm].
     """
     vertex_distance = 11.0  # [mm] between cornea and lens
-    bend = 0.0016 * np.maximum(np.abs(places[:, 0]) - 12.0, 0.0) ** 2
-    lean = 0.09 * (places[:, 1] - lens[1])
-    return np.column_stack([places, cornea + vertex_distance - bend + lean])
+    bend = 0.0016 * np.maximum(np.abs(points[:, 0]) - 12.0, 0.0) ** 2
+    lean = 0.09 * (points[:, 1] - lens[1])
+    return np.column_stack([points, cornea + vertex_distance - bend + lean])
 
 
 def _depth_at(skin: Floats64, points: Floats64) -> float:

@@ -14,9 +14,8 @@ decimation has left folds of small triangles; the mean loses little on either. A
 surrounding triangles also underestimates bends. So for heights, but not for shading, a normal is
 moved a little away from the normals of its neighbours: n - 0.15 x mean of the neighbours,
 normalised. This changes nothing on a plane, or on a sphere of equal triangles. An edge on a border
-takes its tangents from the border curve, because the normals of a surface do not determine its
-outline. If one end is a corner of the border, only the other end has a tangent, and the curve is a
-parabola. With the chord as the tangent at the corner, the curve would be flatter than skin is.
+takes its tangents from the border curve, because normals do not determine an outline. At a corner
+of the border there is no tangent, so the curve is a parabola; a chord as tangent would be too flat.
 
 The *displacement* of a point is the vector from its place on the straight edge to the curve. Points
 of split edges are moved by the displacement times their geomorph weight (blending.py):
@@ -80,10 +79,9 @@ are almost equally good.
 """
 STEEPENING_SHARE = np.float32(0.15)
 """Fraction of the neighbours' mean normal that is subtracted from a normal. A vertex normal is a
-mean, and the subtraction is a first step to undo the averaging. A second step, or a larger one,
-amplifies the noise of decimated meshes. Measured on two faces and their decimations: half a
-percentage point of 35 better on scans, equal on smooth heads, and half a percentage point worse on
-the roughest and on a torus.
+mean, and the subtraction is a first step to undo this. A second or a larger step amplifies the
+noise of decimated meshes. Measured on two faces and their decimations: half a percentage point of
+35 better on scans, equal on smooth heads, half a point worse on the roughest and on a torus.
 """
 EIGHTH = np.float32(1 / 8)
 """Weight of the end tangents in the middle of a cubic."""

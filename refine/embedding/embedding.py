@@ -81,11 +81,9 @@ class Embedding:
         with the same label. `crease_angle`: edges that are sharper at rest [degrees] stay sharp.
         `stretch_offsets`: whether offsets are also scaled by the stretch of the surface around
         them; else they only turn. `groups`, integers of shape (N,): fine vertices with the same
-        number are bound to the point of the first of them, so a hair keeps its shape and follows
-        its root.
-        `places`: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace
-        the search: one for each group, numbered from 0 on, or, without groups, one for each fine
-        vertex. Raises ValueError for arrays that do not fit together, points that are not finite,
+        number are bound to the point of the first of them, so a hair keeps its shape. `places`:
+        triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace the search:
+        one for each group, numbered from 0 on, or one for each fine vertex. Raises ValueError for arrays that do not fit together, points that are not finite,
         and labels or places without a triangle that has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from risorius.assets.annotation import annotation_of, places_on_texture
+from risorius.assets.annotation import annotation_of, points_on_texture
 from risorius.assets.identities import complexion, person_called
 
 
@@ -27,7 +27,7 @@ def test_a_brow_ends_where_its_hairs_do(monkeypatch, number):
     seen = 0.3  # share of a hair's darkness
     rows, columns = np.nonzero(hairs > seen)
     uv = (np.column_stack([columns, rows]) + 0.5) / len(hairs) * [1.0, -1.0] + [0.0, 1.0]
-    places = places_on_texture(uv[columns > len(hairs) / 2]).interpolate(person.vertices)
+    places = points_on_texture(uv[columns > len(hairs) / 2]).interpolate(person.vertices)
     nose_end, tail = points[[22 - 17, 26 - 17]]
     last = places[norm(places - nose_end, axis=1).argmax()]
     assert norm(tail - last) < 1.5  # [mm]

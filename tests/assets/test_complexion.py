@@ -29,7 +29,7 @@ from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import _behind, _tints, typology_angle
 from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
-from risorius.assets.identities.population import IRIS_SHARES
+from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.assets.model import Segment
 from risorius.assets.pigments import OWN
 from risorius.assets.smooth import shrunk
@@ -113,7 +113,7 @@ def test_eyes_have_their_colours(head):
     """Blue irises are bluest, brown ones reddest and darkest; only irises change."""
     person = make_person(sample_identity(1))
     iris = {}
-    for name in IRIS_SHARES:
+    for name in IRIS_FREQUENCIES:
         eyed = coloured(person, angle=40.0, irises=name)
         for old, new in zip(person.parts, eyed.parts, strict=False):
             changed = (np.abs(old.colours - new.colours) > 0.01).any(axis=1)
@@ -140,7 +140,9 @@ def test_colours_of_a_number(head):
     assert (first.albedo == second.albedo).all()
     assert (first.parts[0].colours == second.parts[0].colours).all()
     brown = coloured(person, angle=40.0, irises="brown").parts[0].colours
-    others = [coloured(person, angle=40.0, irises=name).parts[0].colours for name in IRIS_SHARES]
+    others = [
+        coloured(person, angle=40.0, irises=name).parts[0].colours for name in IRIS_FREQUENCIES
+    ]
     is_iris = (np.abs(others[0] - others[1]) > 0.01).any(axis=1)
 
     def redness(colours):

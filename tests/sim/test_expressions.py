@@ -218,7 +218,7 @@ def test_lips_do_not_cross(simulation, model, state, values):
     settled_displacement(simulation, both_sides(simulation, values))
     lips = model.skin.lips
     y = state.x[:, 1]
-    beside = lips.share * y[lips.beside[:, 0]] + (1.0 - lips.share) * y[lips.beside[:, 1]]
+    beside = lips.weight * y[lips.beside[:, 0]] + (1.0 - lips.weight) * y[lips.beside[:, 1]]
     gap = lips.below * (beside - y[lips.vertex])
     assert (gap - lips.least_gap).min() > -PRESSED_OVERLAP - 0.1
 

@@ -186,12 +186,12 @@ def test_a_wrong_row_is_named(rows, message):
         controls(layer("X", **rows))
 
 
-def test_a_row_cannot_use_a_share():
-    """A row cannot use a control that is a share.
+def test_a_row_cannot_use_a_fraction():
+    """A row cannot use a control that is a fraction of another one.
 
     A share depends on set values, which a row in a higher layer does not have.
     """
-    with pytest.raises(ValueError, match=r"'above', 'part': is a share of 'whole', which"):
+    with pytest.raises(ValueError, match=r"'above', 'part': is a fraction of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 

@@ -37,8 +37,8 @@ def test_a_level_lid_keeps_its_seam():
 def test_irises_and_lids_move_no_farther_on_a_large_ball():
     """The way of a gaze along the surface does not grow on eyeballs larger than a human's."""
     human, large = (Eyeball(Side.LEFT, np.zeros(3), radius) for radius in (12.8, 18.8))
-    assert human.gaze_share == 1.0
-    assert_allclose(large.gaze_share * large.radius, human.radius)
+    assert human.gaze_factor == 1.0
+    assert_allclose(large.gaze_factor * large.radius, human.radius)
 
 
 def test_a_shut_lid_is_a_smooth_sheet_over_the_ball(simulation, head):

@@ -82,8 +82,8 @@ def test_carrying_is_the_formula(simulation, model, state):
                 along = motion.contracted[c, :, k]
                 beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLES), along)
             beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), carried[c, :, k])
-        carried[b, p] += steady + stack.share[row] * beneath
-        shares[b, p] += stack.share[row]
+        carried[b, p] += steady + stack.weight[row] * beneath
+        shares[b, p] += stack.weight[row]
     assert 0.9 < shares.max() < 1.0 + 1e-9
     assert np.array_equal(motion.is_carried, np.abs(carried).max(axis=(1, 2)) > 0.0)
     assert np.allclose(motion.carried[motion.is_carried], carried[motion.is_carried], atol=1e-9)

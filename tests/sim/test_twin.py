@@ -84,7 +84,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
         hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST))
         i = lips.vertex[pair]
         (a, b) = lips.beside[pair]
-        w = lips.share[pair]
+        w = lips.weight[pair]
         ends = mine.x + h * mine.v - rest
         apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b]
         apart[1] -= lips.below[pair] * grip.overlap
@@ -101,7 +101,7 @@ def _sealed_speeds(skin, state, grip, h):
     lips = skin.lips
     mass = skin.mass
     rest = skin.rest
-    w = lips.share[:, None]
+    w = lips.weight[:, None]
 
     def difference(of):
         return of[lips.vertex] - w * of[lips.beside[:, 0]] - (1.0 - w) * of[lips.beside[:, 1]]

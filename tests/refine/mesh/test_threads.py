@@ -62,7 +62,7 @@ def test_every_item_once(monkeypatch):
         def add(first, last, items):
             items[first:last] += 1
 
-        threads.share(add, count, done)
+        threads.parallel_for(add, count, done)
         assert (done == 1).all()
 
     def fail(first, last):
@@ -70,7 +70,7 @@ def test_every_item_once(monkeypatch):
             raise ValueError("the last part")
 
     with pytest.raises(ValueError, match="the last part"):
-        threads.share(fail, 1000)
+        threads.parallel_for(fail, 1000)
 
 
 def test_small_meshes_start_no_thread(head, monkeypatch):
@@ -83,10 +83,10 @@ def test_small_meshes_start_no_thread(head, monkeypatch):
     refiner = refine.create("kahler", head.faces, head.vertices, **LOOK)
     assert refiner.refine(1.01 * head.vertices).triangle_count > len(head.faces)
     monkeypatch.setattr(threads, "THREAD_COUNT", 1)
-    threads.share(lambda first, last: None, 1_000_000)
+    threads.parallel_for(lambda first, last: None, 1_000_000)
     monkeypatch.setattr(threads, "THREAD_COUNT", 2)
     with pytest.raises(AssertionError, match="a thread was started"):
-        threads.share(lambda first, last: None, 1_000_000)
+        threads.parallel_for(lambda first, last: None, 1_000_000)
 
 
 FORKED = """
