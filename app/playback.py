@@ -9,7 +9,7 @@ LEAD = 0.047  # [s] by which simulated muscles and skin lag behind their control
 
 @dataclass(frozen=True)
 class Playback:
-    """Options for the conversion of a recording; for None the kind of file decides.
+    """Options for the conversion of a recording; None leaves a choice to the kind of file.
 
     neutral: "first:SECONDS", "percentile" or "none". gains: factors of channels, as "NAME=x".
     mirror: whether to swap left and right. lead: time by which muscles act before the recording

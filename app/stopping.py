@@ -1,4 +1,4 @@
-"""Signals of Ctrl-C, a closed terminal or `kill`: clean up half-written files, and end the process.
+"""Handle Ctrl-C, a closed terminal or `kill`: remove half-written files, and end the process.
 
 The handlers raise no exception. If C code calls Python and ignores its errors, an exception would
 be lost, and the signal would have no effect. During a compilation an exception crashes moderngl.

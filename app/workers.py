@@ -1,4 +1,4 @@
-"""Work in separate processes, which are started again if they die.
+"""Work in separate processes; if a process dies, another one repeats its work.
 
 A new process is started for each piece of work. It is not forked, because a forked process hangs if
 its parent has used OpenGL. It has its own session, so that only its parent gets Ctrl-C. Work is a
@@ -228,28 +228,28 @@ def _note(log: Path | None, text: str) -> None:
 
 
 def run_all(
-    work: Callable[..., object], shares: Sequence[Any], *, log: Path | None = None
+    work: Callable[..., object], parts: Sequence[Any], *, log: Path | None = None
 ) -> Iterator[Any]:
-    """Do `work(share, send)` for all shares in parallel; yield their messages as they come.
+    """Do `work(part, send)` for all parts in parallel; yield their messages as they come.
 
-    A share whose process died begins again. If the caller stops early, or is stopped, all processes
+    A part whose process died begins again. If the caller stops early, or is stopped, all processes
     end. Raises UserError for the first failure.
     """
-    pool = WorkerPool(max(len(shares), 1))
+    pool = WorkerPool(max(len(parts), 1))
     messages = queue.SimpleQueue[Any]()
     end = object()
 
-    def run(share: Any) -> None:
-        """Do one share in a process, and queue its messages, its error or its end."""
+    def run(part: Any) -> None:
+        """Do one part in a process, and queue its messages, its error or its end."""
         try:
-            pool.run(work, share, on_message=messages.put, log=log)
+            pool.run(work, part, on_message=messages.put, log=log)
             messages.put(end)
         except Exception as error:
             messages.put(error)
 
-    with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(max(len(shares), 1)) as threads:
+    with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(max(len(parts), 1)) as threads:
         try:
-            left = len([threads.submit(run, share) for share in shares])
+            left = len([threads.submit(run, part) for part in parts])
             while left:
                 message = messages.get()
                 if isinstance(message, Exception):

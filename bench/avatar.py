@@ -125,8 +125,10 @@ def measured_file(head: HeadFile) -> Row:
     seconds = time.perf_counter() - begin
     points, names = mesh_called("head", content)
     mesh = read_mesh(head.mesh)
-    numbers, places = read_landmarks(head.landmarks, mesh)
-    guess = guessed(head.name, mesh, mesh.vertices[numbers] if places is None else places)
+    indices, landmark_points = read_landmarks(head.landmarks, mesh)
+    guess = guessed(
+        head.name, mesh, mesh.vertices[indices] if landmark_points is None else landmark_points
+    )
     return _row(guess, mesh.vertices, points, names, content, seconds, avatar)
 
 

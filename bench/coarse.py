@@ -125,9 +125,9 @@ def _angles_and_areas(
 ) -> tuple[Floats64, Floats64]:
     """Angle [degrees] between each triangle's normal and the nearest point's normal, and areas."""
     triangles = mesh.triangles[is_chosen].astype(np.int64)
-    middles = mesh.positions[triangles].mean(axis=1)
+    centroids = mesh.positions[triangles].mean(axis=1)
     normals = unit_vectors(mesh.normals[triangles].mean(axis=1).astype(float))
-    distances, nearest = surface.tree.query(middles, k=6)
+    distances, nearest = surface.tree.query(centroids, k=6)
     cosines = np.einsum("nkc,nc->nk", surface.normals[nearest], normals)
     least_cosine = 0.2  # leaves out points on the inner side of a lip or a lid
     distances = np.where(cosines > least_cosine, distances, np.inf)

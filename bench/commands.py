@@ -28,7 +28,7 @@ size_option = click.option(
 
 @click.group()
 def bench() -> None:
-    """Measure: each command prints figures and the method."""
+    """Measure; each command prints its figures and describes its method."""
 
 
 @bench.command("refine")
@@ -181,7 +181,7 @@ def bench_motion(reference: Path) -> None:
 @click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
 @reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
-    """Measure avatars: places of vertices, sums of shapes, guessed landmarks.
+    """Measure avatars: positions of vertices, sums of shapes, guessed landmarks.
 
     The heads are the built-in head, a person, and the heads in the folders of both options.
     """

@@ -1,8 +1,8 @@
 """Measure the error of a fine mesh that is moved by a coarse mesh.
 
-Surfaces with a formula are bent by maps with a formula, so the true place of every fine vertex is
-known. The vertices of both meshes lie on the surface at rest. `refine.Embedding` is compared with
-two usual ways to bind a fine mesh to a coarse simulation. Both attach each point to the flat
+Surfaces with a formula are bent by maps with a formula, so the true position of every fine vertex
+is known. The vertices of both meshes lie on the surface at rest. `refine.Embedding` is compared
+with two usual ways to bind a fine mesh to a coarse simulation. Both attach each point to the flat
 triangle that is nearest at rest: the first at the triangle itself, the second with an offset in the
 triangle's own axes. All three methods use the same coarse triangles.
 """
@@ -61,8 +61,8 @@ def sphere(levels: int) -> Surface:
 def tube(around: int, along: int) -> Surface:
     """An open cylinder along x, with radius 0.5 and length 4, that faces outward."""
     angles = 2.0 * np.pi * np.arange(around) / around
-    places = np.linspace(-2.0, 2.0, along + 1)
-    x, angle = np.meshgrid(places, angles, indexing="ij")
+    stations = np.linspace(-2.0, 2.0, along + 1)
+    x, angle = np.meshgrid(stations, angles, indexing="ij")
     y = 0.5 * np.cos(angle)
     z = 0.5 * np.sin(angle)
     rings = np.stack([x, y, z], axis=2)
@@ -110,7 +110,7 @@ CASES: tuple[tuple[str, Surface, Surface, tuple[Map, ...]], ...] = (
 
 
 class FlatBinding:
-    """A place on the flat triangle nearest at rest, and the offset in the triangle's own axes."""
+    """A point on the flat triangle nearest at rest, and the offset in the triangle's own axes."""
 
     def __init__(self, faces: Faces, rest: Points, points: Points) -> None:
         """Bind `points` at rest."""

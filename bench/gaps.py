@@ -236,9 +236,9 @@ def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
     upper = np.take_along_axis(cut, order[:, 1:2], axis=1)
     low = lower[:, :, 1]
     high = upper[:, :, 1]
-    share = (heights - low) / np.maximum(high - low, 1e-9)
-    depth = lower[:, :, 2] + share * (upper[:, :, 2] - lower[:, :, 2])
-    inside = (share >= 0.0) & (share <= 1.0)
+    fraction = (heights - low) / np.maximum(high - low, 1e-9)
+    depth = lower[:, :, 2] + fraction * (upper[:, :, 2] - lower[:, :, 2])
+    inside = (fraction >= 0.0) & (fraction <= 1.0)
     reach: Floats64 = np.where(inside, depth, -np.inf).max(axis=0, initial=-np.inf)
     return reach
 

@@ -112,10 +112,10 @@ class IdentitySpace:
         angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
         outward = np.cos(angles) * aside + np.sin(angles) * upward
         slanted = np.sqrt(0.5) * (facing + outward)
-        ways = np.concatenate([facing[None], slanted])
+        directions = np.concatenate([facing[None], slanted])
         opposite_depth = 12.0  # [mm] on a line of sight within which skin hides a vertex
         distances = np.arange(1.0, opposite_depth)
-        points = self.mean + distances[:, None, None, None] * ways
+        points = self.mean + distances[:, None, None, None] * directions
         rows = points.reshape(-1, 3)
         nearest = closest_points(rows, self.mean, self.triangles)
         away = rows - nearest.interpolate(self.mean)
@@ -193,9 +193,9 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
         found = asked[near]
         system = _changes(modes, points, found, facing[near])
         left = ((foot[near] - points[found]) * facing[near]).sum(axis=1)
-        share = independent_points / max(len(found), 1)
-        normal = share * system.T @ system
-        right = share * system.T @ left
+        correction = independent_points / max(len(found), 1)
+        normal = correction * system.T @ system
+        right = correction * system.T @ left
         if number < landmark_rounds:
             marks = space.landmarks[face_landmarks]
             off = surface.landmarks[face_landmarks] - points[marks]
@@ -224,15 +224,15 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     )
 
 
-def _changes(modes: Points, points: Points, numbers: Faces, ways: Points) -> Points:
-    """Derivative of points along directions `ways` (n, 3), by modes, turns and shifts, (n, K + 6).
+def _changes(modes: Points, points: Points, numbers: Faces, directions: Points) -> Points:
+    """Derivative of points along `directions` (n, 3), by modes, turns and shifts, (n, K + 6).
 
     modes: rotated, shape (K, V, 3). numbers: indices of the points, shape (n,).
     """
-    by_modes = np.einsum("kij,ij->ik", modes[:, numbers], ways)
+    by_modes = np.einsum("kij,ij->ik", modes[:, numbers], directions)
     # A small turn w about the origin moves a point p along n by (p x n) w.
-    by_turns = np.cross(points[numbers], ways)
-    return np.hstack([by_modes, by_turns, ways])
+    by_turns = np.cross(points[numbers], directions)
+    return np.hstack([by_modes, by_turns, directions])
 
 
 def _feet(

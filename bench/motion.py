@@ -69,8 +69,8 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     """ARKit's shapes for a field's name: one, both of a pair, or none for an unknown name."""
     other_names = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
     name = other_names.get(name.lower(), name)
-    for ways in ([name], [f"{name}Left", f"{name}Right"]):
-        shapes = [shape_of(each) or "" for each in ways]
+    for spellings in ([name], [f"{name}Left", f"{name}Right"]):
+        shapes = [shape_of(each) or "" for each in spellings]
         if set(shapes) <= set(simulation.controls.tables.weights):
             return shapes
     return []
@@ -79,7 +79,7 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
 def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
     """Displacement by shapes at 1 [mm], (V, 3).
 
-    A shape that is a share of another shape is measured from the pose of that shape.
+    A shape that is a fraction of another shape is measured from the pose of that shape.
     """
     share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}

@@ -28,7 +28,7 @@ class Row:
     published_women: float
     published_men: float
     deviation: float
-    """Of women, published."""
+    """Published deviation of women."""
 
     @property
     def apart(self) -> float:
@@ -42,7 +42,7 @@ class Row:
 
 
 def measure(count: int) -> list[Row]:
-    """Draw `number` women and as many men, and measure them."""
+    """Draw `count` women and as many men, and measure them."""
     space = person_space()
     means = {}
     for sex in Sex:

@@ -121,10 +121,10 @@ def measure(
                 mesh = make(pose.coarse)
                 positions, _, triangles, *_ = mesh
                 distances = closest_points(pose.dense, positions, triangles).distances
-                share = len(triangles) / len(subject.coarse_faces)
+                ratio = len(triangles) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))
                 errors = _apart(_shoot(canvas, cameras, mesh), truth)
-                scores.append(Score(method, name, share, distance, *errors))
+                scores.append(Score(method, name, ratio, distance, *errors))
     return scores
 
 
@@ -141,8 +141,8 @@ def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callab
     kind = refiner if refiner in ("none", "loop") else "kahler"
     bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **own)
     if refiner == "sliding":
-        triangle_share = 2.0
-        most = triangle_share * len(subject.coarse_faces)
+        triangle_ratio = 2.0
+        most = triangle_ratio * len(subject.coarse_faces)
         return lambda positions: _slid(bound, own["criterion"], positions, most)
     return bound.refine
 

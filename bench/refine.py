@@ -182,10 +182,10 @@ def _waving_cases(load: Load) -> list[_Case]:
         _fixed("smooth", load, WINDOWS_LOOK),
     ]
     # Percentage of split edges -> quantiles of the drops for the two thresholds.
-    shares = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
-    for share, quantiles in shares.items():
+    thresholds = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
+    for percent, quantiles in thresholds.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
-        title = f"kahler {share} %"
+        title = f"kahler {percent} %"
         limits = {"threshold_once": once, "threshold_twice": twice}
         cases.append(_own(title, load, "kahler", **limits))
         cases.append(_fixed(title, load, limits))

@@ -13,7 +13,7 @@ import click
 
 
 def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -> list[str]:
-    """Lines of a table, with the titles first; the cell of None is empty.
+    """Lines of a table, with the titles first; None gives an empty cell.
 
     columns: "title:format" with the width first, as in "name:<9|ms:8.3f"; "<" aligns text left.
     """
@@ -43,12 +43,12 @@ class Target(NamedTuple):
 
 
 def at_most(name: str, value: float, most: float, unit: str = "") -> Target:
-    """The target that `value` is not larger than `most`; NaN misses it."""
+    """The target that `value` is at most `most`; NaN misses it."""
     return Target(f"{name}: {value:.4g}{unit}, at most {most:g}{unit}", value <= most)
 
 
 def at_least(name: str, value: float, least: float, unit: str = "") -> Target:
-    """The target that `value` is not smaller than `least`; NaN misses it."""
+    """The target that `value` is at least `least`; NaN misses it."""
     return Target(f"{name}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
 
 

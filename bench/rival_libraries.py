@@ -53,8 +53,8 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> Frame:
 
     def frame(positions: Points, limit: float) -> Surface:
         """The refined surface of a frame."""
-        middles = np.array([positions[loop].mean(axis=0) for loop in loops]).reshape(-1, 3)
-        points = np.concatenate([positions, middles]).astype(np.float32)
+        centroids = np.array([positions[loop].mean(axis=0) for loop in loops]).reshape(-1, 3)
+        points = np.concatenate([positions, centroids]).astype(np.float32)
         mesh = manifold3d.Mesh(points, closed, face_id=names)
         smooth = manifold3d.Manifold.smooth(mesh, rims, [0.0] * len(rims))
         fine = smooth.refine_to_tolerance(limit) if adaptive else smooth.refine(2)

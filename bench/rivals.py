@@ -57,7 +57,7 @@ class Row(NamedTuple):
     coarse_triangles: int
     method: str
     triangles: int
-    """Of the refined mesh."""
+    """Number of triangles of the refined mesh."""
     distance: float
     """Root mean square [millionths of the diagonal]."""
     first: float

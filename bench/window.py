@@ -54,7 +54,7 @@ def measure(
         for turn in range(rounds):
             for name in cases if turn % 2 == 0 else reversed(cases):
                 seen[name] += _play(viewer, cases[name], seconds / rounds)
-        idle, alive = (_idle_share(viewer, is_alive=each) for each in (False, True))
+        idle, alive = (_idle_load(viewer, is_alive=each) for each in (False, True))
         is_software = viewer.surface.is_software
         driver = viewer.surface.gl.info["GL_RENDERER"]
         width, height = viewer.surface.size
@@ -113,8 +113,8 @@ def _run(viewer: Viewer, seconds: float) -> Frames:
     return frames
 
 
-def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
-    """Share of one core that the window uses while nothing happens, or during idle motion."""
+def _idle_load(viewer: Viewer, *, is_alive: bool) -> float:
+    """Fraction of one core that the window uses while nothing happens, or during idle motion."""
     viewer.session.neutral()
     viewer.settings.is_alive = is_alive
     while not (viewer.schedule.is_left_alone if is_alive else viewer.schedule.is_idle):

@@ -87,8 +87,8 @@ def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats3
     # Gradients of the barycentric coordinates: coordinate i grows away from the edge opposite.
     gradients = np.cross(normal[:, None], np.stack([c - b, a - c, b - a], axis=1))
     gradients /= squared[:, None, None]
-    shares = np.einsum("tik,tcsk->tcsi", gradients, directions[faces])  # (F, corner, k, i)
-    sides = -shares * np.roll(shares, -1, axis=3)  # of the edges 01, 12, 20
+    coordinates = np.einsum("tik,tcsk->tcsi", gradients, directions[faces])  # (F, corner, k, i)
+    sides = -coordinates * np.roll(coordinates, -1, axis=3)  # of the edges 01, 12, 20
     lengths = np.stack(
         [((b - a) ** 2).sum(1), ((c - b) ** 2).sum(1), ((a - c) ** 2).sum(1)], axis=1
     )
@@ -99,8 +99,8 @@ def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats3
     totals = np.zeros(directions.shape[:2])
     for k in range(3):
         np.add.at(totals, faces[:, k], weight[:, k])
-    share = weight / np.maximum(totals[faces], 1e-300) / np.where(is_visible, in_plane, 1.0)
-    return np.ascontiguousarray(share[..., None] * sides, dtype=np.float32)
+    factors = weight / np.maximum(totals[faces], 1e-300) / np.where(is_visible, in_plane, 1.0)
+    return np.ascontiguousarray(factors[..., None] * sides, dtype=np.float32)
 
 
 @njit

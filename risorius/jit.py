@@ -1,4 +1,4 @@
-"""`njit`: numba's decorator with fixed options, and a store of machine code, never stale.
+"""`njit`: numba's decorator with fixed options, and a store of its machine code.
 
 Numba stores machine code itself (`cache=True`), but only checks one file at a time: when a kernel
 changes that another file calls, old code keeps running. So code is stored in a folder that is named

@@ -79,7 +79,7 @@ class Within:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Numbers of the annotated kinds."""
+        """The check of a number of the annotated kinds."""
         if get_origin(source) is tuple:
             schema = core_schema.tuple_schema(
                 list(map(self._of_one, get_args(source))), strict=True

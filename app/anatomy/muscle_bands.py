@@ -49,7 +49,7 @@ AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  
 class Muscles:
     """All bands of a face as one part that changes its shape (see render/parts.py).
 
-    striation: place of each vertex across and along the fibres, (n, 2) [mm at rest].
+    striation: coordinates of each vertex across and along the fibres, (n, 2) [mm at rest].
     """
 
     vertices: Floats32
@@ -155,7 +155,7 @@ class Muscles:
         self._shift = rails + self._below * self._facing - x
 
     def _moved(self, face: Face) -> tuple[Floats64, Floats64]:
-        """Return current edges and middles of all bands, and outward directions, (3, b, ROWS, 3).
+        """Return current edges and middle lines of bands, and outward directions, (3, b, ROWS, 3).
 
         A band's origin moves with its bone, and its insertion with the skin.
         """
@@ -170,17 +170,17 @@ class Muscles:
         for name, own in (("cranium", ~self._is_mandible), ("mandible", self._is_mandible)):
             bands = np.flatnonzero(own)
             turn = bones[name][:3, :3].T
-            share = ALONG[:, None]
+            fraction = ALONG[:, None]
             fixed = self._rest[:, bands] @ turn + bones[name][:3, 3]
-            rails[:, bands] = fixed + share * (rails[:, bands] - fixed)
+            rails[:, bands] = fixed + fraction * (rails[:, bands] - fixed)
             out = self._outward[:, bands] @ turn
-            normal[:, bands] = out + share * (normal[:, bands] - out)
+            normal[:, bands] = out + fraction * (normal[:, bands] - out)
         outside = np.einsum("...c,...c->...", rails - over, facing)[..., None]
         rails -= np.maximum(outside + self._least, 0.0) * facing
         return rails, unit_vectors(normal)
 
     def _carry(self, x: Floats64, normals: Floats64) -> tuple[Floats64, Floats64]:
-        """Return places and unit normals over all bands, of a skin with vertices x (V, 3)."""
+        """Return the points of a skin, x (V, 3), over all bands, and unit normals there."""
         found = self._carriers @ np.hstack([x, normals])
         found = found.reshape(*self._rest.shape[:3], 6)
         return found[..., :3], unit_vectors(found[..., 3:])
@@ -202,9 +202,9 @@ class Muscles:
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
         # Share of tendon in the colour: large at both ends of a band.
         tendon = np.clip(1.4 - np.minimum(ALONG, 1.0 - ALONG) / 0.14, 0.0, 0.92)
-        share = np.tile(tendon, (len(grid), 1))
-        share[len(self.names) :] = 0.0
-        colour = red[:, None] + share[..., None] * (TENDON - red[:, None])
+        fraction = np.tile(tendon, (len(grid), 1))
+        fraction[len(self.names) :] = 0.0
+        colour = red[:, None] + fraction[..., None] * (TENDON - red[:, None])
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         light = 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
         colours = colour[:, :, None] * light[:, None]
@@ -296,9 +296,9 @@ class _Skin:
         near, weight = self._near(points, out, 3 * NEAR, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
         starts, number = np.unique(first, return_inverse=True)
-        way = path_lengths(self.x, self._faces, starts)
+        path_length = path_lengths(self.x, self._faces, starts)
         straight = np.linalg.norm(self.x[near] - self.x[first], axis=-1)
-        weight *= way[number.reshape(first.shape), near] <= 1.5 * straight + 1e-9
+        weight *= path_length[number.reshape(first.shape), near] <= 1.5 * straight + 1e-9
         alone = weight.sum(axis=-1, keepdims=True) == 0.0
         near = np.concatenate([near, np.broadcast_to(first, alone.shape)], axis=-1)
         weight = np.concatenate([weight, alone], axis=-1)
@@ -363,8 +363,8 @@ def _resampled(lines: Floats64) -> Floats64:
     """Return ROWS points along each polyline (b, n, 3), smoothed where it bends."""
     at = np.linspace(0.0, lines.shape[1] - 1.0, ROWS)
     low = np.minimum(at.astype(int), lines.shape[1] - 2)
-    share = (at - low)[:, None]
-    points: Floats64 = lines[:, low] * (1.0 - share) + lines[:, low + 1] * share
+    fraction = (at - low)[:, None]
+    points: Floats64 = lines[:, low] * (1.0 - fraction) + lines[:, low + 1] * fraction
     for _ in range(3):
         points[:, 1:-1] = 0.25 * points[:, :-2] + 0.5 * points[:, 1:-1] + 0.25 * points[:, 2:]
     return points

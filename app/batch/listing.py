@@ -30,7 +30,7 @@ class Job:
     log: Path
 
     def is_done(self) -> bool:
-        """Whether all files exist, and no output is older than an input.
+        """Whether all outputs exist, and none of them is older than an input.
 
         An output that exists is complete, because commands write their files atomically.
         """

@@ -1,4 +1,4 @@
-"""Execution of the lines of a list, and their results as text and as a CSV file."""
+"""Run the lines of a list, and report the results as text and as a CSV file."""
 
 from __future__ import annotations
 

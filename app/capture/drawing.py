@@ -216,7 +216,7 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script, and yield the time [s] of each frame after the scene has moved to it.
+        """Play a script; move the scene to each frame, and yield the frame's time [s].
 
         Frames before the options' span are played too, because later frames depend on them.
         """
@@ -235,8 +235,8 @@ class Capture:
             progress=progress,
         ):
             if options.is_turntable:
-                share = (time - begin) * options.frames_per_second / (frames + 1)
-                self.camera.yaw = math.remainder(yaw + 360.0 * share, 360.0)
+                fraction = (time - begin) * options.frames_per_second / (frames + 1)
+                self.camera.yaw = math.remainder(yaw + 360.0 * fraction, 360.0)
             yield time
 
 

@@ -1,4 +1,4 @@
-"""Processes that draw a film together; each draws its share of the frames.
+"""Processes that draw a film together; each draws a subset of the frames.
 
 Software OpenGL uses only one core well. The simulation is cheap and gives the same bytes in every
 process, so each process plays the whole script and draws every n-th frame. The pictures arrive
@@ -23,7 +23,7 @@ from .drawing import Capture, CaptureOptions, Frame
 
 
 @dataclass(frozen=True)
-class TriangleGroup:
+class FrameSubset:
     """The frames that one process draws: first, first + every, ..., up to the time `until` [s]."""
 
     script: Script
@@ -79,7 +79,7 @@ def drawing(
     with cleaned_up_if_stopped(stop):
         try:
             for first in range(count):
-                drawers.append(Worker(_draw, TriangleGroup(script, options, until, first, count)))
+                drawers.append(Worker(_draw, FrameSubset(script, options, until, first, count)))
             drawn = [drawer.messages() for drawer in drawers]
             for index in counted_frames(until, rate, progress=progress):
                 yield index / rate, partial(take, drawn[index % count])
@@ -89,16 +89,16 @@ def drawing(
                 drawer.close()
 
 
-def _draw(share: TriangleGroup, send: Send) -> None:
-    """Draw and send the frames of a share; send None for a frame equal to the last one."""
-    options = share.options
-    if share.first == 0:
+def _draw(subset: FrameSubset, send: Send) -> None:
+    """Draw and send the frames of a subset; send None for a frame equal to the last one."""
+    options = subset.options
+    if subset.first == 0:
         announce_compiling()
     first = 0 if options.span is None else round(options.span[0] * options.frames_per_second)
-    with Capture(scene_of(share.script, options.head), options) as capture:
-        playing = capture.play(share.script, until=share.until, progress=False)
+    with Capture(scene_of(subset.script, options.head), options) as capture:
+        playing = capture.play(subset.script, until=subset.until, progress=False)
         for index, _ in enumerate(playing):
-            is_mine = index >= first and index % share.every == share.first
+            is_mine = index >= first and index % subset.every == subset.first
             is_still = index >= first and capture.is_still()
             if is_mine and not is_still:
                 send(capture.draw_frame())

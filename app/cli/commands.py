@@ -62,7 +62,7 @@ class Live:
     )
 
     def listening(self, gains: tuple[str, ...], mirror: bool) -> Listening | None:
-        """Return where to listen, or None without --live.
+        """Return the address and protocol of a live face, or None without --live.
 
         gains: factors of channels, as "NAME=x". mirror: whether to swap left and right. Raises
         UserError if another option needs --live.
@@ -262,7 +262,7 @@ def open_window(
 
 
 def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
-    """Return the head of the options, and a message if its known landmarks do not fit.
+    """Return the head that the options choose, and a message if its known landmarks do not fit.
 
     The head is None for the built-in head, and for a head whose landmarks may still be marked.
     """

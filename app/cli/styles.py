@@ -20,14 +20,14 @@ SIDES = ("both", "left", "right")
 class Words:
     """The words that an option may hold.
 
-    flags: single words. choices: the words that each name takes as NAME=WORD. shares: the names
+    flags: single words. choices: the words that each name takes as NAME=WORD. fractions: the names
     that take a number from 0 to 1 as NAME=x.
     """
 
     option: str
     flags: tuple[str, ...]
     choices: Mapping[str, tuple[str, ...]]
-    shares: tuple[str, ...]
+    fractions: tuple[str, ...]
 
     def read(self, settings: Sequence[str]) -> dict[str, Any]:
         """Return the value of each name that is set, True for a flag.
@@ -41,8 +41,8 @@ class Words:
                 values[name] = True
             elif name in self.choices:
                 values[name] = self._choice(name, text)
-            elif name in self.shares:
-                values[name] = self._share(name, text)
+            elif name in self.fractions:
+                values[name] = self._fraction(name, text)
             else:
                 raise UserError(f"{self.option}: '{word}' is unknown; allowed are {self.allowed}")
         return values
@@ -51,7 +51,7 @@ class Words:
     def allowed(self) -> str:
         """All allowed words, for messages."""
         named = [f"{name}={'|'.join(words)}" for name, words in self.choices.items()]
-        numbers = [f"{name}=0..1" for name in self.shares]
+        numbers = [f"{name}=0..1" for name in self.fractions]
         return ", ".join([*self.flags, *named, *numbers])
 
     def _choice(self, name: str, text: str) -> str:
@@ -60,14 +60,14 @@ class Words:
             raise UserError(f"{self.option} {name}={text}: '{text}' is none of {words}")
         return text
 
-    def _share(self, name: str, text: str) -> float:
+    def _fraction(self, name: str, text: str) -> float:
         try:
-            share = float(text)
+            fraction = float(text)
         except ValueError:
-            share = math.nan
-        if not 0.0 <= share <= 1.0:
+            fraction = math.nan
+        if not 0.0 <= fraction <= 1.0:
             raise UserError(f"{self.option} {name}={text}: write a number from 0 to 1")
-        return share
+        return fraction
 
 
 STYLE_WORDS = Words(

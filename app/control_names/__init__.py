@@ -129,7 +129,7 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
 
 
 def words_of_group(title: str) -> str:
-    """Return further words by which a search finds a group of controls, or ""."""
+    """Return more words by which a search finds a group of controls; "" for none."""
     return str(_table("groups").get(title, ""))
 
 

@@ -16,7 +16,7 @@ from .folder import SetFolder
 from .packing import Packing
 from .request import SetRequest
 from .sampling import draw
-from .sharing import MadeSample, TriangleGroup, made_on_cluster, make_samples
+from .sharing import MadeSample, SampleBatch, made_on_cluster, make_samples
 from .summary import card_of, write_index
 
 
@@ -59,12 +59,12 @@ def make_set(
         if packing:
             packing.expect(missing)
         if scheduler is None:
-            shares = _shares(request, missing, -(-len(missing) // jobs))
-            arriving = run_all(make_samples, shares, log=folder.log)
+            batches = _batches(request, missing, -(-len(missing) // jobs))
+            arriving = run_all(make_samples, batches, log=folder.log)
         else:
-            # A lost share loses all its samples, but each share takes two seconds to start.
+            # A lost batch loses all its samples, but each batch takes two seconds to start.
             each = min(max(len(missing) // 64, 8), 64)
-            arriving = made_on_cluster(folder, _shares(request, missing, each), scheduler)
+            arriving = made_on_cluster(folder, _batches(request, missing, each), scheduler)
         size = 0
         is_silent = not progress or None
         made = count - len(missing)
@@ -93,8 +93,8 @@ def _check(folder: SetFolder, numbers: range) -> None:
     )
 
 
-def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[TriangleGroup]:
-    """Divide missing samples into shares of `each` samples.
+def _batches(request: SetRequest, missing: Sequence[int], each: int) -> list[SampleBatch]:
+    """Divide missing samples into batches of `each` samples.
 
     Samples of one person stay together, because a head takes long to build. Samples of one shard
     also stay together.
@@ -106,7 +106,7 @@ def _shares(request: SetRequest, missing: Sequence[int], each: int) -> list[Tria
 
     ordered = sorted(missing, key=place)
     return [
-        TriangleGroup(request, tuple(ordered[first : first + each]))
+        SampleBatch(request, tuple(ordered[first : first + each]))
         for first in range(0, len(ordered), max(each, 1))
     ]
 

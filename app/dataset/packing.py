@@ -49,9 +49,9 @@ class Packing:
         return number // self._size in self._packed
 
     def expect(self, missing: Iterable[int]) -> None:
-        """Note which samples will be made, and pack all shards that need none of them."""
-        places = {number // self._size for number in self._numbers}
-        self._waiting = {place: set() for place in places - self._packed.keys()}
+        """Note the samples that will be made, and pack all shards that need none of them."""
+        shard_indices = {number // self._size for number in self._numbers}
+        self._waiting = {place: set() for place in shard_indices - self._packed.keys()}
         for number in missing:
             self._waiting[number // self._size].add(number)
         for place in sorted(self._waiting):

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..control_names.angles import DEGREES
 from .degrading import Degradation
-from .table import BLINK, LETTERS, PERSONS, SampleTable, Shares, paired_units
+from .table import BLINK, LETTERS, PERSONS, SampleTable, Weights, paired_units
 
 MOST_UNITS = 7  # greatest number of units in a mixture
 
@@ -104,17 +104,17 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
     )
 
 
-def chosen(random: np.random.Generator, shares: Shares) -> str:
+def chosen(random: np.random.Generator, frequencies: Weights) -> str:
     """Return a random name; its probability is proportional to its weight."""
-    weights = np.array(list(shares.values()))
-    return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
+    weights = np.array(list(frequencies.values()))
+    return list(frequencies)[int(random.choice(len(weights), p=weights / weights.sum()))]
 
 
 def _degradation(table: SampleTable, random: np.random.Generator) -> Degradation:
     """Draw the blur, noise and JPEG compression of a sample."""
     rows = table.degradations
-    shares = rows.blurred, rows.noisy, rows.compressed
-    is_blurred, is_noisy, is_compressed = random.random(3) < shares
+    probabilities = rows.blurred, rows.noisy, rows.compressed
+    is_blurred, is_noisy, is_compressed = random.random(3) < probabilities
     blur = float(random.uniform(*rows.blur))
     noise = float(random.uniform(*rows.noise))
     jpeg = float(random.uniform(*rows.jpeg))
@@ -156,7 +156,7 @@ class _Face:
             return "+".join(self.controls)
         return self._speak() if kind == "speech" else ""
 
-    def _mix(self, units: Shares) -> None:
+    def _mix(self, units: Weights) -> None:
         """Add one or two random units, and units that often accompany them."""
         random = self._random
         waiting = [chosen(random, units) for _ in range(1 + int(random.random() < 0.5))]

@@ -1,4 +1,4 @@
-"""Make shares of a set: each is made by one process, on this computer or on a Dask worker.
+"""Make batches of samples: one process makes each batch, on this computer or a Dask worker.
 
 A worker that can reach the folder of the set writes into it. Other workers make samples in a
 temporary folder, and send the bytes back.
@@ -25,7 +25,7 @@ from .studio import Studio
 
 
 @dataclass(frozen=True)
-class TriangleGroup:
+class SampleBatch:
     """The samples that one process makes.
 
     numbers: numbers of the samples, sorted by person.
@@ -50,9 +50,9 @@ class MadeSample:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def make_samples(share: TriangleGroup, send: Send) -> None:
-    """Make the missing samples of a share, and pass a `MadeSample` to `send` after each sample."""
-    request = share.request
+def make_samples(batch: SampleBatch, send: Send) -> None:
+    """Make the missing samples of a batch, and pass a `MadeSample` to `send` after each sample."""
+    request = batch.request
     here = version("risorius")
     if request.version != here:
         raise UserError(
@@ -61,13 +61,13 @@ def make_samples(share: TriangleGroup, send: Send) -> None:
         )
     with contextlib.ExitStack() as stack:
         folder = SetFolder(request.output)
-        is_seen = not share.token or (folder.path / UNFINISHED / share.token).exists()
+        is_seen = not batch.token or (folder.path / UNFINISHED / batch.token).exists()
         if not is_seen:
             own = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="risorius-")))
             (own / UNFINISHED).mkdir()
             folder = SetFolder(own)
         studio = Studio(request)
-        for number in share.numbers:
+        for number in batch.numbers:
             size = 0
             if not folder.has(number):  # an earlier process may have made it and died
                 size = folder.write_sample(number, studio.shoot(number).save)
@@ -83,15 +83,15 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
 
 
 def made_on_cluster(
-    folder: SetFolder, shares: Sequence[TriangleGroup], scheduler: str
+    folder: SetFolder, batches: Sequence[SampleBatch], scheduler: str
 ) -> Iterator[MadeSample]:
     """Let a Dask cluster make samples, and yield them; the first failure raises UserError."""
-    if not shares:
+    if not batches:
         return
     token = f"{SEEN}{secrets.token_hex(8)}"
     with cannot_be_written(folder.path):
         (folder.path / UNFINISHED / token).touch()
-    sent = [replace(share, token=token) for share in shares]
+    sent = [replace(batch, token=token) for batch in batches]
     results = run_on_cluster(_make_on_worker, sent, scheduler)
     with contextlib.closing(results):
         for _, result, why in results:
@@ -100,15 +100,15 @@ def made_on_cluster(
             yield from result
 
 
-def _make_on_worker(pool: WorkerPool, share: TriangleGroup) -> list[MadeSample] | str:
-    """Make a share in a process of a Dask worker; return the samples, or the text of an error."""
+def _make_on_worker(pool: WorkerPool, batch: SampleBatch) -> list[MadeSample] | str:
+    """Make a batch in a process of a Dask worker; return the samples, or the text of an error."""
     made: dict[int, MadeSample] = {}  # a process that died may have sent some of them already
 
     def keep(sample: MadeSample) -> None:
         made[sample.number] = sample
 
     try:
-        pool.run(make_samples, share, on_message=keep)
+        pool.run(make_samples, batch, on_message=keep)
     except UserError as error:
         return f"{socket.gethostname()}: {error}"
     return [*made.values()]

@@ -194,7 +194,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
 
 
 def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> render.OrbitCamera:
-    """Return a camera that centres the current head of a scene, and is then moved by a shift.
+    """Return a camera that centres the current head of a scene, and then shift it.
 
     If landmarks would lie outside the picture of `size` pixels, the camera moves again.
     """
@@ -212,10 +212,10 @@ def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> r
     camera.pan(*view.shift)
     for _ in range(3):  # perspective makes one round inexact
         pixels = CameraLabels.of(camera, size).project(scene.positions[scene.landmarks])
-        places = pixels / size[1]
+        fractions = pixels / size[1]
         end = np.array([size[0] / size[1], 1.0]) - margin
-        right, down = np.maximum(places.max(axis=0) - end, 0.0) - np.maximum(
-            margin - places.min(axis=0), 0.0
+        right, down = np.maximum(fractions.max(axis=0) - end, 0.0) - np.maximum(
+            margin - fractions.min(axis=0), 0.0
         )
         camera.pan(float(right), -float(down))
     return camera

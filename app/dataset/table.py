@@ -34,7 +34,7 @@ LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 BARE = "none"  # in the table: no glasses, or no mask
 PERSONS = 1_000_000  # number of persons of a seed; other seeds have other persons
-Shares = Mapping[str, float]
+Weights = Mapping[str, float]
 Range = tuple[float, float]
 
 
@@ -48,11 +48,11 @@ def _units() -> list[str]:
     return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
 
 
-def _drawn(shares: dict[str, float]) -> Shares:
+def _drawn(weights: dict[str, float]) -> Weights:
     """Return shares for a random choice; if all are 0, raise ValueError."""
-    if not any(shares.values()):
+    if not any(weights.values()):
         raise ValueError("all shares are 0; at least one must be above 0")
-    return shares
+    return weights
 
 
 def _ordered(ends: Range) -> Range:
@@ -72,7 +72,7 @@ def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
 
 
 Weight = Annotated[float, Within(0.0, 1e6)]
-TriangleGroup = Annotated[float, Within(0.0, 1.0)]
+Fraction = Annotated[float, Within(0.0, 1.0)]
 Degrees = Annotated[float, Within(0.0, 15.0)]
 Unit = Annotated[str, OneOf(_units)]
 
@@ -85,12 +85,12 @@ class Expression(Record):
     face is one-sided.
     """
 
-    units: Annotated[dict[Unit, TriangleGroup], called(REST)]
+    units: Annotated[dict[Unit, Fraction], called(REST)]
     share: Weight = 0.0
-    one_sided: TriangleGroup = 0.0
+    one_sided: Fraction = 0.0
 
     @property
-    def row(self) -> Shares:
+    def row(self) -> Weights:
         """The row in the form of the table."""
         found = {"share": self.share, "one_sided": self.one_sided, **self.units}
         return {name: value for name, value in found.items() if value}
@@ -119,17 +119,17 @@ class Excluded(Record):
 class Sides(Record):
     """Probabilities of asymmetric and of one-sided faces, and difference between the sides."""
 
-    asymmetric: TriangleGroup
-    difference: TriangleGroup
-    one_sided: TriangleGroup
+    asymmetric: Fraction
+    difference: Fraction
+    one_sided: Fraction
 
 
 @dataclass(frozen=True)
 class Eyes(Record):
     """Probabilities of a blink and of a look into the camera; spread of the gaze [degrees]."""
 
-    blink: TriangleGroup
-    at_camera: TriangleGroup
+    blink: Fraction
+    at_camera: Fraction
     horizontal: Degrees
     vertical: Degrees
 
@@ -159,7 +159,7 @@ class Persons(Record):
     """Number of persons, fraction of women, ages [years], and skin tones, ITA [degrees]."""
 
     count: Annotated[int, Within(1, PERSONS)]
-    women: TriangleGroup
+    women: Fraction
     age: Annotated[Range, _between(18.0, 90.0)]
     tone: Annotated[Range, _between(DARKEST, LIGHTEST)]
 
@@ -168,9 +168,9 @@ class Persons(Record):
 class Degradations(Record):
     """Probabilities and amounts of blur, noise and compression of pictures."""
 
-    blurred: TriangleGroup
-    noisy: TriangleGroup
-    compressed: TriangleGroup
+    blurred: Fraction
+    noisy: Fraction
+    compressed: Fraction
     blur: Annotated[Range, _between(0.0, 20.0)]
     noise: Annotated[Range, _between(0.0, 100.0)]
     jpeg: Annotated[Range, _between(1.0, 95.0)]
@@ -180,26 +180,26 @@ class Degradations(Record):
 class SampleTable(Record):
     """The sections of aus.toml, whose comments are their documentation."""
 
-    kinds: Annotated[Shares, _drawn_from(("neutral", "expression", "mixture", "speech", "unit"))]
-    letters: Annotated[Shares, _drawn_from(LETTERS)]
+    kinds: Annotated[Weights, _drawn_from(("neutral", "expression", "mixture", "speech", "unit"))]
+    letters: Annotated[Weights, _drawn_from(LETTERS)]
     expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
-    units: Annotated[Shares, _drawn_from(_units)]
-    together: dict[Unit, dict[Unit, TriangleGroup]]
+    units: Annotated[Weights, _drawn_from(_units)]
+    together: dict[Unit, dict[Unit, Fraction]]
     excluded: Excluded
-    speech: Annotated[Shares, _drawn_from(lambda: _layer("Visemes"))]
+    speech: Annotated[Weights, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides
     eyes: Eyes
     head: HeadTurn
     camera: Camera
     persons: Persons
-    irises: Annotated[Shares, _drawn_from(IRIS_FREQUENCIES)]
-    cuts_of_women: Annotated[Shares, _drawn_from(CUTS)]
-    cuts_of_men: Annotated[Shares, _drawn_from(CUTS)]
-    shirts: Annotated[Shares, _drawn_from(SHIRTS)]
-    collars: Annotated[Shares, _drawn_from(COLLARS)]
-    glasses: Annotated[Shares, _drawn_from((BARE, *FRAMES))]
-    masks: Annotated[Shares, _drawn_from((BARE, *MASKS))]
-    lights: Annotated[Shares, _drawn_from(LIGHTS)]
+    irises: Annotated[Weights, _drawn_from(IRIS_FREQUENCIES)]
+    cuts_of_women: Annotated[Weights, _drawn_from(CUTS)]
+    cuts_of_men: Annotated[Weights, _drawn_from(CUTS)]
+    shirts: Annotated[Weights, _drawn_from(SHIRTS)]
+    collars: Annotated[Weights, _drawn_from(COLLARS)]
+    glasses: Annotated[Weights, _drawn_from((BARE, *FRAMES))]
+    masks: Annotated[Weights, _drawn_from((BARE, *MASKS))]
+    lights: Annotated[Weights, _drawn_from(LIGHTS)]
     degradations: Degradations
 
     @property

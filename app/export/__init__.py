@@ -1,1 +1,1 @@
-"""Writes the motion of a script as files for other programs."""
+"""Write the motion of a script as files for other programs."""

@@ -61,7 +61,7 @@ class Clip:
         return np.arange(self.frame_count) / self.frames_per_second
 
     def refiner(self, refinement: Refinement, splits: Splits | None = None) -> refine.Refiner:
-        """Make a refiner of the skin. splits: for each edge, (E,), instead of by the criterion."""
+        """Make a refiner of the skin. splits: fixed number for each edge, (E,), or None."""
         return refiner_for(self.scene, refinement, splits)
 
     def refined(
@@ -136,7 +136,10 @@ def record(
 def _surface_of(
     part: Any, shapes: list[Floats32], matrices: Mapping[str, Floats64]
 ) -> MovingSurface:
-    """Make the surface of a part. shapes: its vertices in each frame; a change has a new array."""
+    """Make the surface of a part.
+
+    shapes: its vertices in each frame; a new array if they have changed.
+    """
     is_rigid = all(each is shapes[0] for each in shapes)
     return MovingSurface(
         part.name,

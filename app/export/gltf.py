@@ -57,7 +57,7 @@ class Moving:
 
     @property
     def words(self) -> str:
-        """A line for the user."""
+        """Describe the errors to the user in one line."""
         counts = [sum(name in ARKIT for name in piece.names) for piece in self.pieces]
         named = max(counts)
         others = max(
@@ -176,21 +176,21 @@ def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
         _take_pose_out(clip, shapes)
     bent = np.array([surface.normals_of(shape, frame) for frame, shape in enumerate(shapes)])
     if is_refined:
-        _take_pose_out(clip, bent, are_places=False)
+        _take_pose_out(clip, bent, are_positions=False)
     return bent - surface.normals_of(surface.rest, None)
 
 
-def _take_pose_out(clip: Clip, shapes: Floats64, *, are_places: bool = True) -> None:
+def _take_pose_out(clip: Clip, shapes: Floats64, *, are_positions: bool = True) -> None:
     """Remove the head's motion from shapes or normals of the skin, (N, V, 3), in place.
 
-    are_places: whether shapes are vertices; normals only turn.
+    are_positions: whether shapes are vertices; normals only turn.
     """
     face = clip.scene.face
     if face is None:
         return
-    share = clip.skin.carried(face.head_weight)
+    head_weight = clip.skin.carried(face.head_weight)
     for shape, bone in zip(shapes, clip.bones[CRANIUM], strict=True):
         matrix = bone.copy()
-        if not are_places:
+        if not are_positions:
             matrix[:3, 3] = 0.0
-        shape[:] = without_head_pose(shape, matrix, share)
+        shape[:] = without_head_pose(shape, matrix, head_weight)

@@ -71,8 +71,8 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
         # In each round, a vertex keeps at least the root of 0.03 of its relative weight.
-        share = left / max(left.max(), NOTHING)
-        weighing *= np.sqrt(np.maximum(share, 0.03))
+        ratio = left / max(left.max(), NOTHING)
+        weighing *= np.sqrt(np.maximum(ratio, 0.03))
         weighing /= weighing.max()
         low = max(high - 15, 0)  # a round saves at most 15 shapes
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
@@ -102,8 +102,8 @@ def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     lengths = curves.max(axis=0) - lowest
     targets = np.vstack([lowest @ shapes, lengths[:, None] * shapes])
     shifted = (curves - lowest) / np.where(lengths > 0.0, lengths, 1.0)
-    shares = np.clip(shifted, 0.0, 1.0)
-    weights = np.column_stack([np.ones(len(moved)), shares])
+    unit_weights = np.clip(shifted, 0.0, 1.0)
+    weights = np.column_stack([np.ones(len(moved)), unit_weights])
     kept = np.abs(targets).max(axis=1, initial=0.0) > NOTHING
     targets = targets[kept]
     weights = weights[:, kept]

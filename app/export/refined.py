@@ -23,7 +23,7 @@ from ..rig.poses import Pose
 from ..rig.surface import RefinedSurface
 from .clip import Clip
 
-Places = npt.NDArray[np.void]
+OriginKeys = npt.NDArray[np.void]
 
 
 class RefinedSkin:
@@ -57,7 +57,7 @@ class RefinedClip:
 
     clip: a clip whose skin has one topology.
     fewest, most: numbers of triangles of separately refined frames.
-    farthest, mean: distances of vertices from the same places in these frames [mm].
+    farthest, mean: distances of vertices from the same points of these frames [mm].
     """
 
     clip: Clip
@@ -68,7 +68,7 @@ class RefinedClip:
 
     @property
     def words(self) -> str:
-        """A line for the user."""
+        """Describe the refined skin to the user in one line."""
         skin = self.clip.skin
         if self.fewest == self.most == len(skin.faces):
             return f"refined skin of {len(skin.faces)} triangles"
@@ -112,15 +112,15 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
     shapes = np.empty((clip.frame_count, *rest.positions.shape), np.float32)
     normals = np.empty_like(shapes)
     distances = [np.zeros(1)]
-    places = _places(origins)
+    origin_keys = _origin_keys(origins)
     for frame, mesh in enumerate(clip.refined(refinement, refiner)):
         shapes[frame] = mesh.positions
         normals[frame] = mesh.normals
         if refiner is not changing:
             with reported(plug_ins):
                 own = changing.refine(clip.skin.at(frame))
-                own_places = _places(changing.origins())
-            _, ours, theirs = np.intersect1d(places, own_places, return_indices=True)
+                own_origin_keys = _origin_keys(changing.origins())
+            _, ours, theirs = np.intersect1d(origin_keys, own_origin_keys, return_indices=True)
             distances.append(np.linalg.norm(shapes[frame, ours] - own.positions[theirs], axis=1))
     triangles = rest.triangles.astype(np.int32)
     skin = RefinedSurface(
@@ -141,8 +141,8 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
     return RefinedClip(whole, min(counts), max(counts), float(apart.max()), float(apart.mean()))
 
 
-def _places(origins: refine.Origins) -> Places:
-    """Return each vertex's place on the mesh as bytes, (N,); equal places have equal bytes."""
+def _origin_keys(origins: refine.Origins) -> OriginKeys:
+    """Return each vertex's origin on the mesh as bytes, (N,); equal origins have equal bytes."""
     rows = np.ascontiguousarray(
         np.concatenate([origins.vertices.astype(np.float64), origins.weights], axis=1)
     )

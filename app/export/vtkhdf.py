@@ -85,8 +85,8 @@ class _Steps:
     def add(self, time: float, points: Any, values: dict[str, Any]) -> None:
         """Add the positions of a frame's vertices, and their values."""
         begin = self._length("Points")
-        places = {f"PointDataOffsets/{name}": begin for name in values}
-        row = {"Values": time, "NumberOfParts": 1, "PointOffsets": begin, **places, **self._begins}
+        offsets = {f"PointDataOffsets/{name}": begin for name in values}
+        row = {"Values": time, "NumberOfParts": 1, "PointOffsets": begin, **offsets, **self._begins}
         for name, value in row.items():
             self._steps[name].append(value)
         self._append("Points", points.astype(np.float32))

@@ -114,7 +114,7 @@ class LiveFace(Receiver):
     # Commands
 
     def advance(self, seconds: float) -> None:
-        """Take the frames that have come; `seconds` have passed since the last call."""
+        """Process the frames that have arrived; `seconds` have passed since the last call."""
         self.has_news = False
         for at, frame in self.take():
             self._take_in(frame, at)

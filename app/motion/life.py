@@ -85,7 +85,7 @@ class Life:
         return 0, -math.inf
 
     def _glance(self, time: float) -> Place:
-        """Return the direction of gaze; a saccade leads from one place to the next."""
+        """Return the direction of gaze; a saccade leads from one target to the next."""
         glance_span = 1.6  # [s] for each glance
         number, start = self._latest(GLANCES, glance_span, time)
         before = self._place(number - 1)
@@ -104,8 +104,8 @@ class Life:
         if number < 2:
             return 0.0, 0.0
         random = self._random(PLACES, number)
-        away_share = 0.1  # share of glances that leave the viewer
-        if random.random() >= away_share:
+        away_fraction = 0.1  # share of glances that leave the viewer
+        if random.random() >= away_fraction:
             # Standard deviation of glances over the viewer's face, across and along [degrees].
             face_spread = 1.1, 0.7
             across, along = np.clip(random.normal(0.0, face_spread), -2.0, 2.0)
@@ -199,8 +199,8 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     lost_angles = (65.0, 45.0)
     share = math.prod(map(_followed, aside, followed_angles, lost_angles))
     eye_angle = 10.0  # [degrees] from straight ahead that the eyes turn alone
-    head_share = 0.5  # share of the angle beyond it that the head turns
-    turn, rise = (share * head_share * _beyond(angle, eye_angle) for angle in aside)
+    head_fraction = 0.5  # share of the angle beyond it that the head turns
+    turn, rise = (share * head_fraction * _beyond(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(face.bone_transforms()["cranium"])
     seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer in coordinates of the turned head
     eyes = {}
@@ -215,9 +215,9 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     return {"eyes": eyes, "head": head}
 
 
-def _angles(way: Floats64) -> tuple[float, float]:
+def _angles(direction: Floats64) -> tuple[float, float]:
     """Return the angles of a direction to the left and up from straight ahead [degrees]."""
-    x, y, z = way
+    x, y, z = direction
     return math.degrees(math.atan2(x, z)), math.degrees(math.atan2(y, math.hypot(x, z)))
 
 
@@ -226,6 +226,6 @@ def _beyond(angle: float, least: float) -> float:
 
 
 def _followed(angle: float, whole: float, none: float) -> float:
-    """Return 1 up to the angle `whole`, 0 from the angle `none` on, and smooth values between."""
+    """Return 1 up to the angle `whole`, 0 above the angle `none`, and smooth values between."""
     left = min(max((none - abs(angle)) / (none - whole), 0.0), 1.0)
     return left * left * (3.0 - 2.0 * left)

@@ -75,7 +75,7 @@ def labels_of(
         "pitch": math.asin(min(max(turned[1, 2], -1.0), 1.0)),
         "roll": math.atan2(-turned[1, 0], turned[1, 1]),
     }
-    ways = {side: gaze(face, side) for side in SIDES}
+    directions = {side: gaze(face, side) for side in SIDES}
     sums = face.simulation.controls.sums
     labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
     labels["head"] = {
@@ -84,8 +84,8 @@ def labels_of(
         **{name: round(math.degrees(angle), DIGITS) for name, angle in turns.items()},
     }
     labels["gaze"] = {
-        side: {"camera": _plain(placed.rotation @ way), "head": _plain(to_head @ way)}
-        for side, way in ways.items()
+        side: {"camera": _plain(placed.rotation @ direction), "head": _plain(to_head @ direction)}
+        for side, direction in directions.items()
     }
     if depth is not None:
         on_bone = jaw_on_bone(face, placed, depth, covered)
@@ -112,8 +112,8 @@ def _plain(numbers: Floats64) -> Any:
 def gaze(face: Face, side: str) -> Floats64:
     """Return the direction of gaze of an eye, a unit vector in the scene, shape (3,)."""
     forward = np.array([0.0, 0.0, 1.0])  # direction of a head and of an eye at rest
-    way: Floats64 = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
-    return way
+    direction: Floats64 = face.bone_transforms()[f"eye_{side}"][:3, :3] @ forward
+    return direction
 
 
 CHANNELS = {

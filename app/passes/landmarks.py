@@ -1,4 +1,4 @@
-"""The landmarks of one picture, at the places where annotators of photographs put them.
+"""The landmarks of one picture, at the points that annotators of photographs mark.
 
 The points of the jaw lie on the outline of the face that this camera sees. The outline is searched
 along lines of `assets.annotation`. Points that stay on the jaw bone are returned separately
@@ -128,8 +128,8 @@ def _below(points: Floats64, heights: Floats64, top: float) -> Floats64:
     first = int((heights < top).argmax())
     if first == 0:
         return points
-    share = (heights[first - 1] - top) / (heights[first - 1] - heights[first])
-    start = points[first - 1] + share * (points[first] - points[first - 1])
+    fraction = (heights[first - 1] - top) / (heights[first - 1] - heights[first])
+    start = points[first - 1] + fraction * (points[first] - points[first - 1])
     return np.vstack([start, points[first:]])
 
 
@@ -174,8 +174,8 @@ def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Fl
     beside = 3.0 * camera.intrinsics[0, 0] / depths[:, None]  # [pixels] of 3 mm
     steep = 6.0  # [mm] of depth by which the skin may bend away within a pixel
     is_free = np.zeros(len(points), dtype=np.bool_)
-    for places in (pixels, pixels + np.maximum(beside, 1.0) * outward):
-        seen, is_inside = _values_at(places, depth)
+    for points_beside in (pixels, pixels + np.maximum(beside, 1.0) * outward):
+        seen, is_inside = _values_at(points_beside, depth)
         is_free |= is_inside & ((seen == 0.0) | (seen >= depths - steep))
     return np.asarray(is_free & _values_at(pixels, depth)[1])
 

@@ -1,4 +1,4 @@
-"""The last step of every reader: channels without gaps, over rising times.
+"""The last step of every reader: sort rows by time, and fill gaps in channels.
 
 While a face is out of sight, the last visible pose is held; in the last 0.3 s before the face is
 seen again, a straight line leads to the next pose. A shorter gap is one straight line. So no motion

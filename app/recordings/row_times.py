@@ -1,4 +1,4 @@
-"""Times of rows from frame numbers, and separate times for rows that share one."""
+"""Times of rows from frame numbers, and different times for rows with equal time stamps."""
 
 from __future__ import annotations
 

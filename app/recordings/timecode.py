@@ -66,7 +66,7 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
 
 
 def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
-    """Return how many frames timecode counts in a second, and whether the data show it surely.
+    """Return how many frames timecode counts in a second, and whether the data prove it.
 
     seconds: whole seconds, shape (T,). numbers: frame numbers within the second, shape (T,). From
     one second to the next, the number falls by this count minus the usual step.
@@ -84,8 +84,8 @@ def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
         return usual, False
     counts = np.median(within) - over
     count = float(round(float(np.median(counts))))
-    share = float(np.mean(np.abs(counts - count) < 0.25))
-    if len(counts) > 1 and share > 0.6 and count > int(highest):
+    fraction = float(np.mean(np.abs(counts - count) < 0.25))
+    if len(counts) > 1 and fraction > 0.6 and count > int(highest):
         return count, True
     fitting = [rate for rate in rates if int(highest) < rate and abs(count / rate - 1.0) < 0.04]
     return min(fitting, key=lambda rate: abs(rate - count), default=usual), True

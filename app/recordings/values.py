@@ -77,7 +77,7 @@ def rows_without_face(
 
 
 def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
-    """Return ARKit's shapes, 0 to 1 or a little beyond; NaN for invalid values.
+    """Scale ARKit's shapes to 0 to 1, or a little beyond; invalid values become NaN.
 
     If the face of a take is never at 0, rows of zeros are rows without a face, and become NaN.
     """
@@ -150,8 +150,8 @@ def of_percent(
     most_percent = 300.0  # largest value; programs for animation allow more than 100
     is_large = (values > most) & (values <= most_percent)
     moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
-    share_of_percent = 0.05  # if more rows have large values, these are percent, not errors
-    if not is_large.any() or is_large.any(axis=0).sum() <= share_of_percent * moving.sum():
+    fraction_of_percent = 0.05  # if more rows have large values, these are percent, not errors
+    if not is_large.any() or is_large.any(axis=0).sum() <= fraction_of_percent * moving.sum():
         return dict(channels)
     notes.append(f"{kind} go from 0 to 100 and were divided by 100.")
     return {name: each / 100.0 for name, each in channels.items()}

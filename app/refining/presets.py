@@ -30,7 +30,7 @@ class Preset:
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
 
     def options_for(self, refiner: str) -> Mapping[str, Any]:
-        """Return the options that this preset sets for a refiner; empty if it sets none."""
+        """Return the options that this preset sets for a refiner; {} if it sets none."""
         return self.options.get(refiner, {})
 
 

@@ -38,7 +38,7 @@ class Wrinkling(NamedTuple):
 
 
 class Compression:
-    """Compression of a scene's skin across its wrinkles."""
+    """Measures how far a scene's skin is compressed across its wrinkles."""
 
     def __init__(self, scene: Drawable) -> None:
         wrinkles = scene.skin.wrinkles
@@ -67,10 +67,10 @@ class Compression:
         return Wrinkling(amounts, self._gradients.measure(positions))
 
     def amounts(self, positions: Points, strength: float = 1.0) -> Amounts:
-        """Return the depth of furrows in both slots of each vertex, -1 to 1, shape (V, 2).
+        """Return the depth of both furrow directions at each vertex, -1 to 1, shape (V, 2).
 
-        The amount begins and ends smoothly, so furrows do not pop up. strength: factor on all
-        furrows but folds, which are anatomy.
+        `Wrinkles.across` has two directions for each vertex. Depths change smoothly, so furrows do
+        not pop up. strength: factor on all furrows except folds, such as those of the lids.
         """
         lost = self._shortening.measure(positions)
         # The numbers were chosen by eye. Skin yields a little before it folds, and the depth of a

@@ -96,7 +96,7 @@ class Avatar:
 
     @property
     def extras(self) -> dict[str, Any]:
-        """The extras of a file that say how to weigh the correctives; empty if there are none."""
+        """The extras of a file: the rule for weights of correctives, or {} without correctives."""
         rules = [
             {"name": f"{first}_{second}", "product": [first, second]}
             for first, second in self.pairs

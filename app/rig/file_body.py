@@ -41,7 +41,7 @@ class FileBody:
 
     pivots: bone of an eyeball -> centre of the eyeball [mm], (3,).
     in_bag: indices of the vertices behind the lips that are not simulated, (n,).
-    between_lids: indices of such vertices in eyes that are part of the skin, (m,).
+    between_lids: indices of vertices between the lids that are not simulated, (m,).
     """
 
     name = "head"
@@ -204,7 +204,7 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
-    """Return, for each vertex of a file, its index in the skin, or -1, (V,)."""
+    """Return the index in the skin of each vertex of a file, or -1, (V,)."""
     local_index = np.full(len(same), -1, np.int64)
     local_index[head.file_vertices] = np.arange(len(head.file_vertices))
     return np.where(local_index >= 0, local_index, local_index[same])

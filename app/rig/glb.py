@@ -88,25 +88,27 @@ class Glb:
     def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
         """Add vectors (V, 3) of which most are 0, stored sparsely; return the array's index."""
         count = len(vectors)
-        places = np.flatnonzero(vectors.any(axis=1))
-        if not len(places):
+        nonzero_rows = np.flatnonzero(vectors.any(axis=1))
+        if not len(nonzero_rows):
             return self._nothing(count)
-        if len(places) > 0.8 * count:  # with indices, the array would be larger
+        if len(nonzero_rows) > 0.8 * count:  # with indices, the array would be larger
             return self.accessor(vectors, ARRAY_BUFFER, is_bounded=True)
         short = np.uint16 if count <= 65535 else np.uint32
-        numbers = places.astype(short)
+        numbers = nonzero_rows.astype(short)
         indices = {
             "bufferView": self._view(numbers.tobytes(), None),
             "componentType": COMPONENT_TYPES[numbers.dtype.name],
         }
-        values = {"bufferView": self._view(np.ascontiguousarray(vectors[places]).tobytes(), None)}
+        values = {
+            "bufferView": self._view(np.ascontiguousarray(vectors[nonzero_rows]).tobytes(), None)
+        }
         accessor = {
             "componentType": COMPONENT_TYPES["float32"],
             "count": count,
             "type": "VEC3",
             "min": vectors.min(axis=0).tolist(),
             "max": vectors.max(axis=0).tolist(),
-            "sparse": {"count": len(places), "indices": indices, "values": values},
+            "sparse": {"count": len(nonzero_rows), "indices": indices, "values": values},
         }
         return self.add("accessors", accessor)
 

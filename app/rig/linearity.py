@@ -82,8 +82,8 @@ class Sums:
         Opposite shapes, such as a look up and a look down, are left out. So are shapes whose
         control has `share_of`.
         """
-        shares = self._scene.simulation.controls.tables.share_of
-        names = [name for name in self._displacements if name not in shares]
+        relative_to = self._scene.simulation.controls.tables.share_of
+        names = [name for name in self._displacements if name not in relative_to]
         return [pair for pair in combinations(names, 2) if not _are_opposite(*pair)]
 
     def difference(self, names: Sequence[str]) -> Difference:

@@ -187,16 +187,16 @@ def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
     fewest = 8
     if len(teeth) < fewest:
         return pieces
-    middles = np.array([pieces[place].middle for place in teeth])
+    centres = np.array([pieces[place].middle for place in teeth])
     is_upper = np.array([pieces[place].role == "upper_teeth" for place in teeth])
     most_passes = 10
     for _ in range(most_passes):
         if is_upper.all() or not is_upper.any():
             return pieces
         # Both rows rise by the same slopes backward and aside, at different heights.
-        matrix = np.column_stack([middles[:, [0, 2]], is_upper, ~is_upper])
-        slopes = np.linalg.lstsq(matrix, middles[:, 1], rcond=None)[0]
-        heights = middles[:, 1] - middles[:, [0, 2]] @ slopes[:2]
+        matrix = np.column_stack([centres[:, [0, 2]], is_upper, ~is_upper])
+        slopes = np.linalg.lstsq(matrix, centres[:, 1], rcond=None)[0]
+        heights = centres[:, 1] - centres[:, [0, 2]] @ slopes[:2]
         before = is_upper
         is_upper = heights > slopes[2:].mean()
         if (is_upper == before).all():

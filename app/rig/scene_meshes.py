@@ -130,10 +130,10 @@ def _normal_map(
     Its axes run along u, across u, and outward.
     """
     assert surface.uv is not None and surface.face_uv is not None
-    places = surface.uv[surface.face_uv]
-    texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
+    uv = surface.uv[surface.face_uv]
+    texels = Texels.within(uv.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
     # Slopes per unit of u and of v become slopes per millimetre along u and across u.
-    along, aside = rates(places, surface.rest[surface.faces]).swapaxes(0, 1)
+    along, aside = rates(uv, surface.rest[surface.faces]).swapaxes(0, 1)
     length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
     shear = (along * aside).sum(axis=1) / length
     height = np.maximum(np.linalg.norm(np.cross(along, aside), axis=1) / length, 1e-9)

@@ -109,9 +109,9 @@ class Skeleton:
             self.hang(node, parent)
         return node
 
-    def _places(self, bone: str) -> Floats64:
+    def _motions(self, bone: str) -> Floats64:
         """Return matrices (N, 4, 4) from a bone's node to the scene [mm]."""
         to_pivot = np.eye(4)
         to_pivot[:3, 3] = self.pivot(bone)
-        places: Floats64 = self._motion.get(bone, self._still) @ to_pivot
-        return places
+        motions: Floats64 = self._motion.get(bone, self._still) @ to_pivot
+        return motions

@@ -92,13 +92,15 @@ def worth_correcting_on(
         for pair in bar:
             displacement = rest_in(scene, dict.fromkeys(pair, 1.0)).skin - scene.rest_positions
             displacements.append(displacement - sums.sum(dict.fromkeys(pair, 1.0)))
-    shares = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
-    columns = np.stack([(shares * displacement).ravel() for displacement in displacements], axis=1)
+    area_weights = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
+    columns = np.stack(
+        [(area_weights * displacement).ravel() for displacement in displacements], axis=1
+    )
     products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
     along = np.zeros(products.shape)  # scalar products of each frame's error and each corrective
     for frame, displacement in enumerate(take.displacements):
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
-        along[frame] = (shares * (displacement - sums.sum(at_once))).ravel() @ columns
+        along[frame] = (area_weights * (displacement - sums.sum(at_once))).ravel() @ columns
     return _greediest(tried, products, along, columns.T @ columns, count)
 
 
@@ -139,12 +141,12 @@ def difference_on(
     """
     sums = Sums(scene, poses, pairs)
     areas = vertex_areas(scene.rest_positions, scene.faces)
-    shares = areas / areas.sum()
+    area_weights = areas / areas.sum()
     farthest = 0.0
     squares = []
     for frame, displacement in enumerate(take.displacements):
         weights = dict(zip(ARKIT, take.curves[frame].tolist(), strict=True))
         off = np.linalg.norm(sums.sum(weights) - displacement, axis=1)
         farthest = max(farthest, float(off.max()))
-        squares.append(float(shares @ off**2))
+        squares.append(float(area_weights @ off**2))
     return Difference((take.title,), farthest, float(np.sqrt(np.mean(squares))))

@@ -54,7 +54,7 @@ class BentPart:
     roots: None = None
 
     def follow(self, now: FaceNow) -> None:
-        """Take the shape for the current face, relative to the part's bone."""
+        """Change the shape to fit the current face, relative to the part's bone."""
         raise NotImplementedError
 
     def take_shape(self, vertices: Floats64) -> None:

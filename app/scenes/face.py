@@ -126,8 +126,8 @@ class FaceScene(Scene):
         if name not in self._moved_by:
             at_most = self.limits.pose({name: self.limits[name][1]})
             sums = controls.sums_of(at_most.numbers).tolist()
-            shares = zip(controls.lowest, sums, strict=True)
-            self._moved_by[name] = {each: abs(share) for each, share in shares if share}
+            amounts = zip(controls.lowest, sums, strict=True)
+            self._moved_by[name] = {each: abs(amount) for each, amount in amounts if amount}
         return self._moved_by[name]
 
 

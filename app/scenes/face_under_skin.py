@@ -71,7 +71,7 @@ class Face:
     def positions(self) -> Floats64:
         """The current vertices of the skin [mm], shape (V, 3); always the same view.
 
-        A dense skin is computed at this read.
+        A dense skin is computed when this is read.
         """
         simulated: Floats64 = self.simulation.positions
         return simulated if self.dense_skin is None else self.dense_skin.positions
@@ -84,12 +84,12 @@ class Face:
 
     @property
     def marked(self) -> Floats64:
-        """The current places of the rig's 68 landmarks [mm], shape (68, 3)."""
+        """The current positions of the rig's 68 landmarks [mm], shape (68, 3)."""
         return np.asarray(self.positions[self.head.landmarks])
 
     @cached_property
     def annotation(self) -> Annotation:
-        """Where human annotators of pictures put the 68 points on this head."""
+        """The points of this head that annotators of pictures mark as the 68 points of iBug."""
         return annotation_of(self.head)
 
     def follow(self) -> None:

@@ -38,7 +38,7 @@ class Mask(BentPart):
         self._held = np.clip(1.0 - distances / reach, 0.0, 1.0)[:, None]
 
     def follow(self, now: FaceNow) -> None:
-        """Take the shape on the current skin."""
+        """Change the shape to fit the current skin."""
         moved = stretched_walls(self._rest, self._shares, now.mandible())
         clearance = 2.0  # [mm]
         heights = self._heights(now.skin_on("cranium"), moved[: len(self._outward)])

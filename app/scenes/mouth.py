@@ -134,7 +134,7 @@ def _shaded(
 ) -> Floats32:
     """Darken colours (n, 3) behind the front teeth."""
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
-    share = np.clip(behind, 0.0, 1.0)
-    light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)
+    fraction = np.clip(behind, 0.0, 1.0)
+    light = 1.0 - gloom.lost * fraction * fraction * (3.0 - 2.0 * fraction)
     seen: Floats32 = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
     return seen

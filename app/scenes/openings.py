@@ -56,8 +56,8 @@ def _through(count: int, point_count: int) -> Floats64:
     of_half = count // 2
     knots = np.linspace(0.0, 1.0, of_half + 1)
     of_half_rim = point_count // 2
-    places = np.arange(of_half_rim) / of_half_rim
-    weights = np.vander(places, of_half + 1) @ np.linalg.inv(np.vander(knots, of_half + 1))
+    fractions = np.arange(of_half_rim) / of_half_rim
+    weights = np.vander(fractions, of_half + 1) @ np.linalg.inv(np.vander(knots, of_half + 1))
     found = np.zeros((2, of_half_rim, count))
     for half in range(2):
         columns = (half * of_half + np.arange(of_half + 1)) % count

@@ -45,7 +45,7 @@ class PlaneScene(Scene):
         self._positions[:] = self.waved(self.rest_positions)[0]
 
     def waved(self, points: Floats64) -> tuple[Floats64, Floats64]:
-        """Return current places of points of the plane z = 0, and normals there, (n, 3) each."""
+        """Return current positions of points of the plane z = 0, and normals there, (n, 3) each."""
         height = self.values["amplitude"] * self.HEIGHT * self._length
         frequency = 2.0 * np.pi * self.WAVES / self._length
         along = points.sum(axis=1) / np.sqrt(2.0)

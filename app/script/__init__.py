@@ -50,7 +50,7 @@ class Key(Record):
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """The keys of one control, at least one, in the order of time.
+    """The keys of one control, in the order of time; there is at least one.
 
     A recorded take has half a million keys, so they are kept in read-only arrays.
 
@@ -125,11 +125,11 @@ class Channel:
     def value(self, time: float) -> float:
         """Return the eased value at `time` [s]; it is constant before and after all keys."""
         times, values, easings = self._parts
-        previous, following, share = _between(times, time)
+        previous, following, fraction = _between(times, time)
         start = values[previous]
         slope, arrival, is_held = easings[3 * following : 3 * following + 3]
-        way = share // 1.0 if is_held else hermite(share, slope / 10, arrival / 10)
-        return start + (values[following] - start) * way
+        eased = fraction // 1.0 if is_held else hermite(fraction, slope / 10, arrival / 10)
+        return start + (values[following] - start) * eased
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
@@ -147,10 +147,10 @@ class Channel:
         before = np.maximum(after - 1, 0)
         following = np.minimum(after, len(self) - 1)
         seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
-        shares = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
+        fractions = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
         start = self.values[before]
-        ways = shares_of(shares, self.easings[following])
-        values: Floats64 = start + (self.values[following] - start) * ways
+        eased = shares_of(fractions, self.easings[following])
+        values: Floats64 = start + (self.values[following] - start) * eased
         return values
 
     def outline(self, start: float, end: float, count: int) -> tuple[Floats64, Floats64]:
@@ -230,7 +230,7 @@ class Script:
 
     @functools.cached_property
     def _placed_tracks(self) -> tuple[tuple[int, Channel], ...]:
-        """For each track, the place in `names` that it adds to."""
+        """For each track, the index in `names` of the control to which it adds."""
         return tuple((self.names.index(name), track) for name, track in self.tracks.items())
 
     def posed(self, time: float) -> dict[str, float]:
@@ -241,10 +241,12 @@ class Script:
         """Return the values of the poses at `time` [s], in the order of `posed_names`."""
         if not self.posed_names:
             return np.zeros(0)
-        before, after, share = _between(self._pose_times, time)
+        before, after, fraction = _between(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
-        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).of(share)
+        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).of(
+            fraction
+        )
         return posed
 
     def posed_channel(self, name: str) -> Channel:
@@ -302,7 +304,7 @@ class Script:
 
 
 def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
-    """Return the indices of the times before and after `time` [s], and the share between them.
+    """Return the indices of the times before and after `time` [s], and the fraction between them.
 
     Before the first time both indices are the first, after the last time both are the last.
     """

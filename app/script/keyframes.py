@@ -31,7 +31,7 @@ Placed = tuple[Script, Places]  # a script, and places of some of its keys
 
 
 def places_of(script: Script) -> Places:
-    """Return the places of all keys of a script, the poses first."""
+    """Return the tracks and times of all keys of a script, the poses first."""
     poses = {POSES: np.array([pose.time for pose in script.poses])}
     return Places(poses | {name: track.times for name, track in script.tracks.items()})
 
@@ -101,7 +101,7 @@ def without(script: Script, places: Places) -> Script:
 
 
 def eased(script: Script, places: Places, easing: str) -> Script:
-    """Give keys another easing."""
+    """Change the easing of keys."""
     changed = {}
     for name, columns in _columns(script, places).items():
         is_chosen = among(columns[0], places.times[name])
@@ -176,7 +176,7 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
 
 
 def keyed_alone(script: Script, time: float, values: ControlValues, names: Iterable[str]) -> Script:
-    """Add keys for some controls alone, so that the script has their values at `time` [s].
+    """Add keys for these controls and no others, so that the script has their values at `time` [s].
 
     If there is a pose at this time, it takes the controls that have no track. Other controls get a
     key in a track, which is added to the poses. A new track is 0 at the poses before and after, so

@@ -1,4 +1,4 @@
-"""Sets of places of keys in a script, which are fast even for half a million keys."""
+"""Sets of keys in a script, by track and time; they are fast even for half a million keys."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ NOTHING: Times = np.empty(0)
 
 
 class KeyPlace(NamedTuple):
-    """Place of a key: the track, and the time [s] in it."""
+    """The track of a key, and its time [s]."""
 
     track: str
     time: float
 
 
 class Places(Set[KeyPlace]):
-    """An immutable set of places: the times of keys in each track."""
+    """An immutable set of keys: their times in each track."""
 
     def __init__(self, times: Mapping[str, Times]) -> None:
         """times: name of the track -> times [s], strictly rising."""
@@ -30,7 +30,7 @@ class Places(Set[KeyPlace]):
 
     @classmethod
     def of(cls, *places: KeyPlace) -> Places:
-        """Make the set of a few places."""
+        """Make a set of a few keys."""
         times: dict[str, set[float]] = {}
         for track, time in places:
             times.setdefault(track, set()).add(time)

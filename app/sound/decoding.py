@@ -69,15 +69,15 @@ class Peaks:
         # Intervals of four or more blocks read whole blocks, shorter intervals read samples.
         length = self.BLOCK if edges[-1] - edges[0] >= count * 4 * self.BLOCK else 1
         low, high = self._levels[length]
-        places = np.floor(edges / length).astype(np.int64)
-        begins = places[:-1]
+        indices = np.floor(edges / length).astype(np.int64)
+        begins = indices[:-1]
         begins = begins[begins < len(low)]
         filled = len(begins)
         lowest = np.zeros(count)
         highest = np.zeros(count)
         if filled:
             first = int(begins[0])
-            last = min(int(places[filled]), len(low))
+            last = min(int(indices[filled]), len(low))
             last = max(last, int(begins[-1]) + 1)
             lowest[:filled] = np.minimum.reduceat(low[first:last], begins - first)
             highest[:filled] = np.maximum.reduceat(high[first:last], begins - first)

@@ -39,7 +39,7 @@ class NoDeviceError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A part to play, from one time of the sound to another [s], at a speed."""
+    """A part of the sound to play: from one time to another [s], at a speed."""
 
     start: float
     speed: float
@@ -139,9 +139,9 @@ class Player:
         rate = self._sound.rate
         chunk = np.zeros((count, sound.shape[1]), np.int16)
         if part is not None:
-            places = part.start * rate + part.speed * np.arange(first, first + count)
-            is_in = (places >= 0.0) & (places < part.end * rate)
-            chunk[is_in] = sound[places[is_in].astype(np.int64)]
+            positions = part.start * rate + part.speed * np.arange(first, first + count)
+            is_in = (positions >= 0.0) & (positions < part.end * rate)
+            chunk[is_in] = sound[positions[is_in].astype(np.int64)]
         return chunk
 
 

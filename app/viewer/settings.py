@@ -99,7 +99,7 @@ def _refiners() -> list[str | None]:
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
 Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
-TriangleGroup = Annotated[float, Within(0.0, 1.0)]
+Fraction = Annotated[float, Within(0.0, 1.0)]
 Option = Annotated[Any, MadeFrom(Any, _option)]  # value of an option; the refiner checks it further
 
 
@@ -114,21 +114,21 @@ class Display(Record):
     is_refined: Flag = True
     compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the kind of comparison
     beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the unrefined mesh
-    divider: TriangleGroup = 0.5  # place of a wipe's line, as a share of the picture's width
+    divider: Fraction = 0.5  # place of a wipe's line, as a share of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
     splits: Flag = False  # colour triangles by their splits
     wires: Flag = False  # outline triangles with more splits than at rest
     skin: Annotated[str, OneOf(SKINS)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from texture maps
-    wrinkles: TriangleGroup = 1.0  # depth of wrinkles where skin is compressed
+    wrinkles: Fraction = 1.0  # depth of wrinkles where skin is compressed
     light: Annotated[str, MadeFrom(Any, _light)] = "studio"  # the name of a `scene_light`
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
     tone: Annotated[str, OneOf(TONES)] = "own"  # tone of textured skin
     has_hair: Flag = True  # whether a head with textured skin has hair
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Opacity of the skin over muscles and skull, and the side of the face that shows these.
-    skin_opacity: TriangleGroup = OPACITY
+    skin_opacity: Fraction = OPACITY
     dissect: Annotated[str, OneOf(SIDES)] = "both"
 
     @property

@@ -49,13 +49,13 @@ class Nearby(NamedTuple):
 
     curves: Integers64
     """The vertices p, a, q of every turn, shape (T, 3)."""
-    ways: list[Integers32]
-    """For each ring but the first, vertices that turns spread to and from, shape (2, S)."""
-    way_shares: list[Floats64]
-    """Share of a turn that spreads along each pair, shape (S,)."""
+    steps: list[Integers32]
+    """For each ring except the first, the vertices to and from which turns spread, (2, S)."""
+    step_weights: list[Floats64]
+    """Weight of a turn that spreads along each pair, shape (S,)."""
     edges: Integers64
     """The edges on and beside the border, shape (N,)."""
-    edge_shares: Floats64
+    edge_factors: Floats64
     """Factor on the sum of the turns at an edge's ends, for its measure, shape (N,)."""
 
 
@@ -80,11 +80,11 @@ class BorderTurn(refine.Criterion):
         change = turns_of(positions, normals, nearby.curves) - self._rest_turns
         turns = np.zeros(self._mesh.vertex_count)
         turns[nearby.curves[:, 1]] = np.linalg.norm(change, axis=1)
-        for (end, start), shares in zip(nearby.ways, nearby.way_shares, strict=True):
-            np.add.at(turns, end, shares * turns[start])
+        for (end, start), weights in zip(nearby.steps, nearby.step_weights, strict=True):
+            np.add.at(turns, end, weights * turns[start])
         metric[:] = 0.0
         ends = self._mesh.edges[nearby.edges]
-        metric[nearby.edges] = nearby.edge_shares * turns[ends].sum(axis=1)
+        metric[nearby.edges] = nearby.edge_factors * turns[ends].sum(axis=1)
         self.thresholds.scale(metric)
 
 
@@ -118,7 +118,7 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     curves = np.column_stack([before[vertices], vertices, after[vertices]])
     directions = _units(np.diff(rest_positions[mesh.edges], axis=1)[:, 0])
     ring = rings_from_border(mesh)
-    ways, shares = ways_inward(mesh, ring)
+    steps, weights = edges_inward(mesh, ring)
 
     # The direction of the border beside a vertex has no sign, so it is stored as a square, d d^T.
     squares = np.zeros((mesh.vertex_count, 3, 3))
@@ -127,7 +127,7 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     halves = 0.5 * along[:, :, None] * along[:, None, :]
     for end in mesh.edges[is_border].T:
         np.add.at(squares, end, halves)
-    for (end, start), means in zip(ways, shares, strict=True):
+    for (end, start), means in zip(steps, weights, strict=True):
         parts = means[:, None, None] * squares[start]
         np.add.at(squares, end, parts)
 
@@ -136,10 +136,10 @@ def find_nearby(mesh: refine.Connectivity, rest_positions: Floats64) -> Nearby:
     across = directions[is_near]
     cosines = np.einsum("ei,eij,ej->e", across, near, across)
     faded = []
-    for rings_left, means in zip(range(REACH_RINGS, 0, -1), shares, strict=False):
+    for rings_left, means in zip(range(REACH_RINGS, 0, -1), weights, strict=False):
         faded.append(means * (rings_left - 1) / rings_left)
-    edge_shares = 0.5 * np.where(is_border[is_near], 1.0, cosines)
-    return Nearby(curves.astype(np.int64), ways, faded, np.flatnonzero(is_near), edge_shares)
+    edge_factors = 0.5 * np.where(is_border[is_near], 1.0, cosines)
+    return Nearby(curves.astype(np.int64), steps, faded, np.flatnonzero(is_near), edge_factors)
 
 
 def rings_from_border(mesh: refine.Connectivity) -> Integers64:
@@ -153,7 +153,7 @@ def rings_from_border(mesh: refine.Connectivity) -> Integers64:
     return ring
 
 
-def ways_inward(
+def edges_inward(
     mesh: refine.Connectivity, ring: Integers64
 ) -> tuple[list[Integers32], list[Floats64]]:
     """For each ring except the first, the edges that lead to its vertices from the previous ring.
@@ -161,12 +161,12 @@ def ways_inward(
     Returns for each ring the ends and starts of these edges, shape (2, S), and the weight of each
     edge in the mean over all edges with the same end, shape (S,).
     """
-    ways = []
-    shares = []
-    both_ways = np.concatenate([mesh.edges, mesh.edges[:, ::-1]])
-    start_ring, end_ring = ring[both_ways].T
+    steps = []
+    weights = []
+    directed_edges = np.concatenate([mesh.edges, mesh.edges[:, ::-1]])
+    start_ring, end_ring = ring[directed_edges].T
     for k in range(1, REACH_RINGS):
-        start, end = both_ways[(start_ring == k - 1) & (end_ring == k)].T
-        ways.append(np.stack([end, start]))
-        shares.append(1.0 / np.bincount(end, minlength=mesh.vertex_count)[end])
-    return ways, shares
+        start, end = directed_edges[(start_ring == k - 1) & (end_ring == k)].T
+        steps.append(np.stack([end, start]))
+        weights.append(1.0 / np.bincount(end, minlength=mesh.vertex_count)[end])
+    return steps, weights

@@ -74,10 +74,10 @@ def lines_along(scene: Scene) -> list[Points]:
     unit = float(np.sqrt(np.median(np.linalg.norm(normals, axis=1))))
     normals = unit_vectors(normals)
     lift = 0.1  # height of lines over the surface, in mean edge lengths
-    middles = corners.mean(axis=1) + lift * unit * normals
+    centroids = corners.mean(axis=1) + lift * unit * normals
     line_length = 0.5  # in mean edge lengths
     half = 0.5 * line_length * unit * directions
-    return list(np.stack([middles - half, middles + half], axis=1)[is_fold])
+    return list(np.stack([centroids - half, centroids + half], axis=1)[is_fold])
 
 
 class Shapes(NamedTuple):
@@ -128,8 +128,8 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
     bent_angle = 0.2  # [rad] least turn of the normal across a triangle in a fold
     is_bent = high * np.sqrt(2.0 * areas) > bent_angle
     # Largest ratio of least to greatest curvature; a triangle with a larger ratio lies on a dome.
-    along_share = 0.4
-    is_straight = low < along_share * high
+    along_fraction = 0.4
+    is_straight = low < along_fraction * high
     return directions, is_bent & is_straight
 
 
@@ -161,8 +161,8 @@ def _shapes(corners: Points, directions: Points) -> Shapes:
     cosines = -(units * before).sum(axis=2)
     angles = np.arccos(np.clip(cosines, -1.0, 1.0))
     smallest = np.average(angles.min(axis=1), weights=areas)
-    middles = corners.mean(axis=1, keepdims=True)
-    _, _, axes = np.linalg.svd(corners - middles)
+    centroids = corners.mean(axis=1, keepdims=True)
+    _, _, axes = np.linalg.svd(corners - centroids)
     along_fold = np.abs((axes[:, 0] * directions).sum(axis=1))
     off_angles = np.arccos(np.clip(along_fold, 0.0, 1.0))
     off_fold = np.average(off_angles, weights=areas)

@@ -41,7 +41,7 @@ SIZE = (1280, 720)  # [pixels] of the picture
 SMALL_SIZE = (64, 36)  # so few pixels take almost no time
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
 ALONE = "refinement alone"
-WAYS = (DRAWN, DRAWN_SMALL, ALONE)
+STAGES = (DRAWN, DRAWN_SMALL, ALONE)
 """The timed stages, from most to least."""
 
 
@@ -90,12 +90,15 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         return interleaved([partial(work, static), partial(work, dynamic)], rounds)
 
     seconds = {}
-    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
+    for stage, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
         with Canvas(size) as canvas:
-            seconds[way] = timed(partial(draw, canvas), rounds)
+            seconds[stage] = timed(partial(draw, canvas), rounds)
     quick_rounds = 10  # rounds without drawing, per round with drawing
     seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
-    return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
+    return [
+        Row.of(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
+        for stage in STAGES
+    ]
 
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:

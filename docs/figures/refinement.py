@@ -22,7 +22,7 @@ from risorius.app.pictures import Image
 from risorius.geometry.arrays import Floats64
 from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
-Places = npt.NDArray[np.float64]
+Points = npt.NDArray[np.float64]
 
 PAPER = (255, 255, 255)
 INK = (32, 34, 40)
@@ -81,7 +81,7 @@ def equilateral(centre: Place, side: float) -> Floats64:
     return np.asarray(np.asarray(centre, dtype=np.float64) + offsets)
 
 
-def points_in(corners: Places) -> Places:
+def points_in(corners: Points) -> Points:
     """The 12 numbered points of a triangle with these corners, shape (12, 2)."""
     return np.asarray(POINTS @ corners / 4.0)
 
@@ -93,7 +93,7 @@ def new_points(splits: tuple[int, int, int]) -> list[int]:
     return middles + quarters
 
 
-def triangulation(diagram: Diagram, corners: Places, splits: tuple[int, int, int]) -> None:
+def triangulation(diagram: Diagram, corners: Points, splits: tuple[int, int, int]) -> None:
     """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL)

@@ -321,10 +321,10 @@ def displace_cubic(
             p = tangents.beyond[e, 0]
             q = tangents.beyond[e, 1]
             length = length_of(d)
-            share_a = length / max(length + length_of(between(positions, p, a)), TINY)
-            share_b = length / max(length + length_of(between(positions, b, q)), TINY)
-            turn_a = less(times(share_a, between(positions, p, b)), ONE, d)
-            turn_b = less(times(share_b, between(positions, a, q)), ONE, d)
+            weight_a = length / max(length + length_of(between(positions, p, a)), TINY)
+            weight_b = length / max(length + length_of(between(positions, b, q)), TINY)
+            turn_a = less(times(weight_a, between(positions, p, b)), ONE, d)
+            turn_b = less(times(weight_b, between(positions, a, q)), ONE, d)
             if p == a:
                 turn_a = times(-ONE, turn_b)
             elif q == b:

@@ -33,12 +33,12 @@ from ..mesh.vectors import (
     write_row,
 )
 
-CENTRE_SHARE = np.float32(0.511)
+CENTRE_WEIGHT = np.float32(0.511)
 """Weight of the edges' displacements in the centre of a triangle: 4/9 (blending.py) plus 15 %,
 because curves between these points stand out farther. With this share the normals are closest to
 the normals of a dense head.
 """
-MEAN_NORMAL_SHARE = np.float32(0.02)
+MEAN_NORMAL_WEIGHT = np.float32(0.02)
 """Weight of the mean of the ends' normals, in squared lengths of the edge, that is added to a
 normal at a split point. Chosen: it matters where a fold leaves no width across an edge. A larger
 weight is softer in deep folds, but farther from dense faces: 0.3 loses five of thirty percentage
@@ -176,7 +176,7 @@ def cross_corners(
         # The sum of displacements is the sum of the split points minus that of the corners.
         three = plus(plus(a, b), c)
         out = less(plus(plus(ab, bc), ca), ONE, three)
-        centre = plus(times(THIRD, three), times(CENTRE_SHARE, out))
+        centre = plus(times(THIRD, three), times(CENTRE_WEIGHT, out))
         write_row(centres, t, centre)
         write_row(corners, of_a, cross(less(centre, ONE, a), less(ca, ONE, ab)))
         write_row(corners, of_b, cross(less(centre, ONE, b), less(ab, ONE, bc)))
@@ -231,7 +231,7 @@ def across_edge(
         return mean  # sheets that meet at a border share no normal
     far = row_of(centres, beyond) if has_two else edge_point
     across = less(row_of(centres, side), ONE, far)
-    steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
+    steady = times(MEAN_NORMAL_WEIGHT * dot(along, along), mean)
     return plus(cross(along, across), steady)
 
 

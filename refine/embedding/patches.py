@@ -155,8 +155,8 @@ def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None
     for k in range(first, last):
         a, b, before, after, s = patches.directed_edges[k]
         if before != NO_VERTEX:
-            patches.slopes[k, 0] = share_of_chord(rest, before, a, b)
-            patches.slopes[k, 1] = share_of_chord(rest, after, b, a)
+            patches.slopes[k, 0] = chord_ratio(rest, before, a, b)
+            patches.slopes[k, 1] = chord_ratio(rest, after, b, a)
             continue
         d = difference(rest, a, b)
         normal = row_of(patches.rest, s)
@@ -169,7 +169,7 @@ def find_slopes(first: int, last: int, rest: Floats64, patches: Patches) -> None
 
 
 @njit
-def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
+def chord_ratio(positions: Floats64, before: np.uint32, a: np.uint32, b: np.uint32) -> float:
     """Return the length of edge a-b, relative to the border from the vertex before a to b."""
     length = distance(positions, a, b)
     whole = length + distance(positions, before, a)
@@ -178,20 +178,20 @@ def share_of_chord(positions: Floats64, before: np.uint32, a: np.uint32, b: np.u
 
 @njit
 def border_tangent(
-    positions: Floats64, way: Unsigned32, share_at_a: float, share_at_b: float
+    positions: Floats64, directed_edge: Unsigned32, ratio_at_a: float, ratio_at_b: float
 ) -> Vector:
     """Return the tangent of a border curve at a along the edge to b, from its shares at both ends.
 
     Beside a corner the curve is a parabola, as in `cubic`.
     """
-    a = way[0]
-    b = way[1]
-    before = way[2]
-    after = way[3]
+    a = directed_edge[0]
+    b = directed_edge[1]
+    before = directed_edge[2]
+    after = directed_edge[3]
     if before == a and after != b:
-        at_b = times(share_at_b, difference(positions, a, after))
+        at_b = times(ratio_at_b, difference(positions, a, after))
         return less(times(2.0, difference(positions, a, b)), 1.0, at_b)
-    return times(share_at_a, difference(positions, before, b))
+    return times(ratio_at_a, difference(positions, before, b))
 
 
 @njit
@@ -210,8 +210,8 @@ def find_tangents(
         a, b, before, after, s = patches.directed_edges[k]
         along = patches.slopes[k, 0]
         if before != NO_VERTEX:
-            at_a = share_of_chord(positions, before, a, b)
-            at_b = share_of_chord(positions, after, b, a)
+            at_a = chord_ratio(positions, before, a, b)
+            at_b = chord_ratio(positions, after, b, a)
             now = border_tangent(positions, patches.directed_edges[k], at_a, at_b)
             carried = border_tangent(
                 positions, patches.directed_edges[k], along, patches.slopes[k, 1]

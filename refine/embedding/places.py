@@ -198,16 +198,16 @@ def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place:
     for m in range(3):
         if place[m] <= 0.0 and step[m] < 0.0 and across[t, (m + 1) % 3] < 0:
             step = step_along(aside, columns, (m + 1) % 3, (m + 2) % 3)
-    share_of = 1.0
+    fraction = 1.0
     hit = INSIDE
     for m in range(3):
-        if step[m] < 0.0 and place[m] + share_of * step[m] < 0.0:
-            share_of = max(place[m], 0.0) / -step[m]
+        if step[m] < 0.0 and place[m] + fraction * step[m] < 0.0:
+            fraction = max(place[m], 0.0) / -step[m]
             hit = m
     moved = 0.0
     for m in range(3):
-        place[m] += share_of * step[m]
-        moved += share_of * abs(step[m])
+        place[m] += fraction * step[m]
+        moved += fraction * abs(step[m])
     if hit == INSIDE:
         return INSIDE if moved > ROUNDING else STUCK
     place[hit] = 0.0
@@ -238,9 +238,9 @@ def newton_step(aside: Vector, columns: Floats64) -> Vector:
 @njit
 def step_along(aside: Vector, columns: Floats64, i: int, j: int) -> Vector:
     """Return the step along the edge from corner i to j that minimises the remainder of `aside`."""
-    way = less(row_of(columns, j), 1.0, row_of(columns, i))
-    squared = dot(way, way)
-    size = dot(way, aside) / squared if squared > 0.0 else 0.0
+    edge = less(row_of(columns, j), 1.0, row_of(columns, i))
+    squared = dot(edge, edge)
+    size = dot(edge, aside) / squared if squared > 0.0 else 0.0
     size = min(max(size, -1.0), 1.0)
     u = -size if i == 0 else (size if j == 0 else 0.0)
     v = -size if i == 1 else (size if j == 1 else 0.0)

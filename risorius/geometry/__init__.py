@@ -1,4 +1,4 @@
-"""Computations on triangles and colours that several rooms share.
+"""Computations on triangles and colours for several rooms.
 
 All modules need numpy and some numba; mesh_graph.py alone also needs scipy, and `refine/` does
 without it.
@@ -12,7 +12,7 @@ gradients.py      gradients of texture coordinates along a surface
 intersections.py  where a surface cuts through itself
 mesh_graph.py     connected pieces of a mesh, and paths along its edges
 normals.py        cross products of triangles, normals of vertices
-polylines.py      the way along polylines
+polylines.py      lengths along polylines
 rays.py           where lines meet triangles
 read_only.py      views that cannot be written
 sides.py          the sides and edges of triangles, as pairs of vertices

@@ -26,7 +26,7 @@ LEAF_SIZE = 4
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """For each of n points, the closest place on a triangle mesh."""
+    """For each of n points, the closest point of a triangle mesh."""
 
     distances: Floats64
     """Shape (n,)."""
@@ -38,7 +38,7 @@ class SurfacePoints:
     """Barycentric coordinates in it, shape (n, 3)."""
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
-        """Interpolate values of the mesh's vertices, (V,) or (V, k), at these places."""
+        """Interpolate values of the mesh's vertices, (V,) or (V, k), at these points."""
         wide = np.asarray(values, dtype=np.float64)[self.corners]
         carried: Floats64 = np.einsum("nc,nc...->n...", self.weights, wide)
         return carried
@@ -52,17 +52,19 @@ class MeshSearch:
     """Vertices of the triangles, shape (F, 3), at least one."""
     _order: Integers64
     _corners: Floats64
-    _ways: Floats64
+    _face_normals: Floats64
     _boxes: Floats64
 
     @classmethod
     def of(cls, vertices: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]) -> Self:
         """Sort and box triangles (F, 3) of vertices (V, 3)."""
         corners = np.asarray(vertices, dtype=np.float64)[faces]
-        order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
+        order = np.argsort(codes_on_curve(corners.mean(axis=1)), kind="stable")
         corners = np.ascontiguousarray(corners[order])
-        ways = cross_products(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
-        return cls(faces, order, corners, unit_vectors(ways, 1e-300), _boxes(corners))
+        face_normals = cross_products(
+            corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3)
+        )
+        return cls(faces, order, corners, unit_vectors(face_normals, 1e-300), _boxes(corners))
 
     def closest(
         self,
@@ -70,13 +72,13 @@ class MeshSearch:
         normals: npt.NDArray[np.floating] | None = None,
         wrong_side: float = 0.0,
     ) -> SurfacePoints:
-        """Find the closest places as `closest_points` does."""
+        """Find the closest points, as `closest_points` does."""
         queries = np.ascontiguousarray(points, dtype=np.float64)
         wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
         distances = np.empty(len(queries))
         triangles = np.empty(len(queries), np.int64)
         weights = np.empty((len(queries), 3))
-        mesh = self._corners, self._ways, self._boxes
+        mesh = self._corners, self._face_normals, self._boxes
         _search(queries, wanted, *mesh, wrong_side, distances, triangles, weights)
         triangles = self._order[triangles]
         return SurfacePoints(distances, triangles, self.faces[triangles], weights)
@@ -89,7 +91,7 @@ def closest_points(
     normals: npt.NDArray[np.floating] | None = None,
     wrong_side: float = 0.0,
 ) -> SurfacePoints:
-    """Find the closest place on a mesh of at least one triangle, for `points` (n, 3).
+    """Find the point of a mesh (one triangle or more) that is closest to each of `points` (n, 3).
 
     `normals`: direction in which the surface should face there, shape (n, 3), zero for any
     direction. For a triangle that faces the other way, `wrong_side` is added to the distance, so
@@ -98,8 +100,8 @@ def closest_points(
     return MeshSearch.of(vertices, faces).closest(points, normals, wrong_side)
 
 
-def places_on_curve(positions: Floats64) -> Integers64:
-    """Place of each position along a space-filling curve, shape (V,)."""
+def codes_on_curve(positions: Floats64) -> Integers64:
+    """Index of each position along a space-filling curve, shape (V,)."""
     if len(positions) == 0:
         return np.zeros(0, dtype=np.int64)
     low = positions.min(axis=0)
@@ -107,11 +109,11 @@ def places_on_curve(positions: Floats64) -> Integers64:
     curve_bits = 20  # of the grid along one axis; 3 x 20 fit a number of 64
     scale = (2**curve_bits - 1) / size if size > 0.0 else 0.0
     cells = ((positions - low) * scale).astype(np.int64)
-    places = np.zeros(len(positions), dtype=np.int64)
+    codes = np.zeros(len(positions), dtype=np.int64)
     for bit in range(curve_bits):  # bits of x, y and z in turn
         for axis in range(3):
-            places |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return places
+            codes |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return codes
 
 
 def _boxes(corners: Floats64) -> Floats64:
@@ -149,14 +151,14 @@ def _search(
     queries: Floats64,
     wanted: Floats64,
     corners: Floats64,
-    ways: Floats64,
+    face_normals: Floats64,
     boxes: Floats64,
     wrong_side: float,
     distances: Floats64,
     triangles: Integers64,
     weights: Floats64,
 ) -> None:
-    """Write the closest place to each query: distance, triangle, barycentric coordinates."""
+    """Write the closest point to each query: distance, triangle, barycentric coordinates."""
     leaf_count = boxes.shape[0] // 2
     stack_size = 64
     stack = np.empty(stack_size, np.int64)
@@ -164,8 +166,8 @@ def _search(
     least_cosine = 0.3  # between two normals that count as the same direction: 73 degrees
     for q in range(queries.shape[0]):
         point = queries[q]
-        way = wanted[q]
-        any_way = way[0] == 0.0 and way[1] == 0.0 and way[2] == 0.0
+        direction = wanted[q]
+        any_direction = direction[0] == 0.0 and direction[1] == 0.0 and direction[2] == 0.0
         least = np.inf
         depth = 1
         stack[0] = 1
@@ -183,9 +185,9 @@ def _search(
                     squared = facing = 0.0
                     for i in range(3):
                         squared += (u * a[i] + v * b[i] + w * c[i] - point[i]) ** 2
-                        facing += ways[t, i] * way[i]
+                        facing += face_normals[t, i] * direction[i]
                     distance = np.sqrt(squared)
-                    turned = 0.0 if any_way else min(max(least_cosine - facing, 0.0), 1.0)
+                    turned = 0.0 if any_direction else min(max(least_cosine - facing, 0.0), 1.0)
                     if distance + wrong_side * turned < least:
                         least = distance + wrong_side * turned
                         distances[q] = distance
@@ -208,7 +210,7 @@ def _search(
 def closest_on_triangle(
     point: Floats64, a: Floats64, b: Floats64, c: Floats64
 ) -> tuple[float, float, float]:
-    """Barycentric coordinates of the place on triangle a, b, c closest to a point."""
+    """Barycentric coordinates of the point of triangle a, b, c that is closest to another point."""
     ux = b[0] - a[0]
     uy = b[1] - a[1]
     uz = b[2] - a[2]

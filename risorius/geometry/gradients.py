@@ -15,7 +15,7 @@ class TextureGradients:
     """
 
     def __init__(self, faces: Integers32, uv: Floats32, face_uv: Integers32) -> None:
-        """Bind triangles (F, 3), and texture coordinates (U, 2) with numbers at corners (F, 3)."""
+        """Bind triangles (F, 3), texture coordinates (U, 2), their indices at corners (F, 3)."""
         self._faces = np.ascontiguousarray(faces)
         self._face_uv = np.ascontiguousarray(face_uv)
         self._corners = uv.astype(np.float64)[face_uv]

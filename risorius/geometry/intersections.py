@@ -1,4 +1,4 @@
-"""Places where a surface cuts through itself.
+"""Self-intersections of a surface.
 
 Source of `near_pairs`: Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE", Symposium on Interactive 3D
 Graphics: boxes are sorted along one axis, and each box is compared with the boxes that begin before

@@ -30,5 +30,5 @@ def vertex_normals(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats
 def vertex_areas(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
     """Return a third of the area of the triangles around each vertex, shape (V,)."""
     face_areas = np.linalg.norm(cross_products(vertices, faces), axis=1) / 2.0
-    shares = np.tile(face_areas / 3.0, 3)
-    return np.asarray(np.bincount(faces.T.ravel(), shares, len(vertices)), np.float64)
+    thirds = np.tile(face_areas / 3.0, 3)
+    return np.asarray(np.bincount(faces.T.ravel(), thirds, len(vertices)), np.float64)

@@ -16,5 +16,5 @@ def evenly_spaced(points: Floats64, along: Floats64, count: int) -> Floats64:
 
     `along`: the parameter of each point of the polyline, ascending, shape (n,).
     """
-    places = np.linspace(0.0, along[-1], count)
-    return np.stack([np.interp(places, along, column) for column in points.T], axis=1)
+    positions = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(positions, along, column) for column in points.T], axis=1)

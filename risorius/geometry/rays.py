@@ -31,10 +31,10 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
     turned = np.cross(from_a, ab)
     volume = (ab * across).sum(axis=1)
     is_met = np.abs(volume) > PARALLEL
-    share = np.divide(1.0, volume, out=np.zeros_like(volume), where=is_met)
+    inverse = np.divide(1.0, volume, out=np.zeros_like(volume), where=is_met)
     u = (from_a * across).sum(axis=1)
     v = (turned * directions).sum(axis=1)
-    return volume, u * share, v * share, (ac * turned).sum(axis=1) * share
+    return volume, u * inverse, v * inverse, (ac * turned).sum(axis=1) * inverse
 
 
 @njit
@@ -88,18 +88,18 @@ def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
     volume = bx * across_x + by * across_y + bz * across_z
     if not abs(volume) > PARALLEL:
         return False
-    share = 1.0 / volume
+    inverse = 1.0 / volume
     x = start[0] - ax
     y = start[1] - ay
     z = start[2] - az
-    u = (x * across_x + y * across_y + z * across_z) * share
+    u = (x * across_x + y * across_y + z * across_z) * inverse
     if not margin < u < 1.0 - margin:
         return False
     turned_x = y * bz - z * by
     turned_y = z * bx - x * bz
     turned_z = x * by - y * bx
-    v = (turned_x * dx + turned_y * dy + turned_z * dz) * share
-    along = (cx * turned_x + cy * turned_y + cz * turned_z) * share
+    v = (turned_x * dx + turned_y * dy + turned_z * dz) * inverse
+    along = (cx * turned_x + cy * turned_y + cz * turned_z) * inverse
     return bool(v > margin and u + v < 1.0 - margin and margin < along < 1.0 - margin)
 
 
@@ -117,11 +117,11 @@ def exits(
     is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # the triangle's inner side
     normals = normals[is_seen]
     corners = corners[is_seen]
-    ways = unit_vectors(corners, PARALLEL)
-    middle = ways.sum(axis=1)
+    axes_of_cones = unit_vectors(corners, PARALLEL)
+    middle = axes_of_cones.sum(axis=1)
     middle = unit_vectors(middle, PARALLEL)
     # A triangle lies in the cone around its middle through its corners, unless the cone is blunt.
-    cone = np.einsum("fik,fk->fi", ways, middle).min(axis=1)
+    cone = np.einsum("fik,fk->fi", axes_of_cones, middle).min(axis=1)
     cone_slack = 1e-6  # of a cosine, for rounding
     cone = np.where(cone > 0.0, cone - cone_slack, -2.0)
     met = np.empty((4 * len(directions), 2), np.int64)
@@ -169,13 +169,13 @@ def _meetings(
             volume = ab[0] * across[0] + ab[1] * across[1] + ab[2] * across[2]
             if abs(volume) <= PARALLEL:
                 continue
-            share = 1.0 / volume
-            u = -(a[0] * across[0] + a[1] * across[1] + a[2] * across[2]) * share
+            inverse = 1.0 / volume
+            u = -(a[0] * across[0] + a[1] * across[1] + a[2] * across[2]) * inverse
             turned[0] = a[2] * ab[1] - a[1] * ab[2]
             turned[1] = a[0] * ab[2] - a[2] * ab[0]
             turned[2] = a[1] * ab[0] - a[0] * ab[1]
-            v = (turned[0] * dx + turned[1] * dy + turned[2] * dz) * share
-            distance = (ac[0] * turned[0] + ac[1] * turned[1] + ac[2] * turned[2]) * share
+            v = (turned[0] * dx + turned[1] * dy + turned[2] * dz) * inverse
+            distance = (ac[0] * turned[0] + ac[1] * turned[1] + ac[2] * turned[2]) * inverse
             if u < 0.0 or v < 0.0 or u + v > 1.0 or distance <= 0.0:
                 continue
             if found < len(met):

@@ -22,7 +22,7 @@ class Texels:
     faces: Integers64
     """The triangle, shape (n,)."""
     weights: Floats64
-    """Barycentric coordinates in the triangle, shape (n, 3); of a place on its border for texels
+    """Barycentric coordinates in the triangle, shape (n, 3); of a point on its border for texels
     beside it.
     """
 
@@ -36,9 +36,9 @@ class Texels:
         many times over.
         """
         height, width = size
-        places = corners * [width, -height] + [-0.5, height - 0.5]
-        low = np.ceil(places.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
-        high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
+        pixels = corners * [width, -height] + [-0.5, height - 0.5]
+        low = np.ceil(pixels.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
+        high = np.floor(pixels.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
         sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
         most_tries = 60_000_000  # a usual layout needs at most two entries for each texel
@@ -46,10 +46,10 @@ class Texels:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
         weights = np.empty((0, 3))
-        count = _walk(places, boxes, margin, found, weights)
+        count = _walk(pixels, boxes, margin, found, weights)
         found = np.empty((count, 3), np.int64)
         weights = np.empty((count, 3))
-        _walk(places, boxes, margin, found, weights)
+        _walk(pixels, boxes, margin, found, weights)
         order = np.argsort(weights.min(axis=1), kind="stable")
         inside = np.maximum(weights[order], 0.0)
         inside /= inside.sum(axis=1, keepdims=True)
@@ -77,12 +77,12 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 
 @njit
 def _walk(
-    places: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
+    pixels: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
     """Count all entries, and write row, column, triangle and weights of those that fit."""
     count = 0
-    for t in range(places.shape[0]):
-        a, b, c = places[t]
+    for t in range(pixels.shape[0]):
+        a, b, c = pixels[t]
         ab = b - a
         ac = c - a
         bc = c - b

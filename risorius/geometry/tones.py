@@ -118,7 +118,7 @@ def _hair_of_row(
     covered: Floats32,
     shaded: Floats32,
 ) -> None:
-    """Write for a row of texels: shares of hair, grey and modelled hair, and the light."""
+    """Write for a row of texels: fractions of hair, grey and modelled hair, and the light."""
     one = np.float32(1.0)
     kept, scalp = hairs.kept[row], hairs.scalp[row]
     for x in range(len(haired)):

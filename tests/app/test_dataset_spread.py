@@ -22,7 +22,7 @@ from risorius.app.dataset.making import make_set
 from risorius.app.dataset.packing import Packing
 from risorius.app.dataset.request import SetRequest, request_of
 from risorius.app.dataset.sampling import draw
-from risorius.app.dataset.sharing import TriangleGroup, made_on_cluster, make_samples
+from risorius.app.dataset.sharing import SampleBatch, made_on_cluster, make_samples
 from risorius.app.dataset.table import load_table
 from risorius.app.errors import UserError
 from risorius.assets.identities import EVERYBODY, own_colours, person_called, sample_identity
@@ -181,7 +181,7 @@ def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
 def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
     """A process that cannot see the set's folder returns the bytes of its files."""
     brought = []
-    make_samples(TriangleGroup(request_for(tmp_path / "nowhere"), (1,), "seen-0"), brought.append)
+    make_samples(SampleBatch(request_for(tmp_path / "nowhere"), (1,), "seen-0"), brought.append)
     (sample,) = brought
     assert sample.number == 1
     assert not (tmp_path / "nowhere").exists()
@@ -197,7 +197,7 @@ def test_another_release_is_refused(tmp_path):
     """A set of another release is refused, because its pictures would differ."""
     request = replace(request_for(tmp_path), version="0.0.1")
     with pytest.raises(UserError, match=r"the set needs 0\.0\.1; install the same"):
-        make_samples(TriangleGroup(request, (1,)), print)
+        make_samples(SampleBatch(request, (1,)), print)
 
 
 def test_seeds_have_different_persons():
@@ -241,7 +241,7 @@ def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
     """Workers that cannot see the folder return the bytes of their samples."""
     folder = SetFolder(tmp_path / "set")
     (folder.path / UNFINISHED).mkdir(parents=True)
-    share = TriangleGroup(request_for(tmp_path / "nowhere"), (0, 1))
+    share = SampleBatch(request_for(tmp_path / "nowhere"), (0, 1))
     for sample in made_on_cluster(folder, [share], cluster.scheduler_address):
         folder.take_sample(sample.number, sample.files)
     for number in (0, 1):

@@ -43,7 +43,7 @@ class ExportJob:
 
     target: Path
     task: Task
-    shown_share: float = 0.0  # share of the finished work that the window displayed last
+    shown_fraction: float = 0.0  # share of the finished work that the window displayed last
 
 
 class Exporter:
@@ -84,7 +84,7 @@ class Exporter:
 
     @property
     def head(self) -> FittedHead | None:
-        """The user's or a person's head in the session; None for the built-in head or no head."""
+        """The user's head, or the head of a person, in the session; else None."""
         face = self.session.scene.face
         return face.head if face is not None and isinstance(face.head, FittedHead) else None
 
@@ -162,9 +162,9 @@ class Exporter:
     def has_news(self) -> bool:
         """Whether the export has advanced since the last call."""
         job = self.job
-        if job is None or (job.shown_share == job.task.share and not job.task.is_done):
+        if job is None or (job.shown_fraction == job.task.share and not job.task.is_done):
             return False
-        job.shown_share = job.task.share
+        job.shown_fraction = job.task.share
         return True
 
     def poll(self) -> Message:

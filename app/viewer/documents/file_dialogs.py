@@ -115,7 +115,7 @@ class FileDialogs:
         with dialog(request.title, width=36.0, height=26.0) as is_open:
             if not is_open:
                 return None
-            _draw_places(gui, request)
+            _draw_shortcuts(gui, request)
             chosen = _draw_listing(gui, request)
             if _is_confirmed(gui, request) and chosen is None:
                 chosen = request.confirmed()
@@ -145,12 +145,12 @@ class FileDialogs:
         return line
 
 
-def _draw_places(gui: Gui, request: FileRequest) -> None:
+def _draw_shortcuts(gui: Gui, request: FileRequest) -> None:
     """Draw buttons for useful folders, and the path of the current folder."""
-    places = {"Up": request.folder.parent, "Home": Path.home()}
+    shortcuts = {"Up": request.folder.parent, "Home": Path.home()}
     if not request.is_saving and SCRIPT_SUFFIX in request.suffixes:
-        places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
-    for label, place in places.items():
+        shortcuts["Examples"] = Path(str(files("risorius.assets") / "scripts"))
+    for label, place in shortcuts.items():
         if button(gui, label, name=f"folder {label}"):
             request.enter(place)
         imgui.same_line()

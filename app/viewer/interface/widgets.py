@@ -191,7 +191,7 @@ class LabelledRows:
     """Draws rows of a panel: a label with a hint, then a list, a slider or another widget."""
 
     def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
-        """share: part of the panel's width for labels. hints: label -> hint."""
+        """share: fraction of the panel's width for labels. hints: label -> hint."""
         self._gui = gui
         self._share = share
         self.hints = dict(hints)

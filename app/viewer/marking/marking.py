@@ -1,4 +1,4 @@
-"""A mesh during the marking of its landmarks: current places, undo, its file.
+"""A mesh whose landmarks are being marked: its marks, undo, its file.
 
 This module is independent of windows. Places are in the mesh's own coordinates; `placing`
 transforms them to the picture's space, which is upright and in millimetres once all marks exist.
@@ -74,7 +74,7 @@ ORDER = tuple(GROUP_OF)
 
 @dataclass(frozen=True)
 class Marks:
-    """Places of the landmarks that exist; `guessed` has the numbers that no user has placed."""
+    """Points of the landmarks that exist; `guessed`: numbers of those that no user has placed."""
 
     places: Mapping[int, Place]
     guessed: frozenset[int] = frozenset()
@@ -106,7 +106,7 @@ class Marks:
 
 
 class Marking:
-    """The marks on one mesh. `current` is the landmark that is requested or chosen."""
+    """The marks on one mesh; `current`: the landmark to mark next, or the chosen one."""
 
     LANDMARKS_SUFFIX = ".json"
 

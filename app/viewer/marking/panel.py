@@ -17,7 +17,7 @@ from ..interface.gui import Gui, colour, em, fixed_panel, ink_of
 from ..interface.widgets import muted
 from ..messages import Messages
 from .marking import GROUP_OF, GROUPS, Marking
-from .picture import MarkingView, Spot
+from .picture import MarkingView, ScreenPoint
 
 DARK = (0.08, 0.08, 0.10)
 WHITE = (1.0, 1.0, 1.0)
@@ -119,8 +119,8 @@ class MarkingPanel:
         middle = 0.5 * (shown.max(axis=0) + shown.min(axis=0))
         spread = np.ptp(shown, axis=0)
         scale = 0.8 * float(np.min(np.array(size) / np.maximum(spread, 1e-9)))
-        spots = np.array([low.x, low.y]) + 0.5 * np.array(size) + scale * (self._guide - middle)
-        at = {n: (float(x), float(y)) for n, (x, y) in enumerate(spots) if n in numbers}
+        points = np.array([low.x, low.y]) + 0.5 * np.array(size) + scale * (self._guide - middle)
+        at = {n: (float(x), float(y)) for n, (x, y) in enumerate(points) if n in numbers}
         _draw_points(imgui.get_window_draw_list(), at, current, joined=True)
 
     def _draw_buttons(self) -> None:
@@ -134,16 +134,16 @@ class MarkingPanel:
 
 
 def _draw_points(
-    pen: imgui.ImDrawList, at: Mapping[int, Spot], current: int, *, joined: bool
+    pen: imgui.ImDrawList, at: Mapping[int, ScreenPoint], current: int, *, joined: bool
 ) -> None:
     """Draw points with a dark border, the lines of groups, and a ring around the current point."""
     for group in GROUPS if joined else ():
         for a, b in (pair for line in group.lines for pair in pairwise(line)):
             if a in at and b in at:
                 pen.add_line(at[a], at[b], ink_of(group.colour, 0.75), em(0.1))
-    for number, spot in at.items():
+    for number, point in at.items():
         radius = em(0.34 if number == current else 0.22)
-        pen.add_circle_filled(spot, radius + em(0.08), ink_of(DARK))
-        pen.add_circle_filled(spot, radius, ink_of(GROUP_OF[number].colour))
+        pen.add_circle_filled(point, radius + em(0.08), ink_of(DARK))
+        pen.add_circle_filled(point, radius, ink_of(GROUP_OF[number].colour))
     if current in at:
         pen.add_circle(at[current], em(0.62), ink_of(WHITE), 0, em(0.12))

@@ -20,7 +20,7 @@ from ..picture.stage import SceneView, Stage
 from ..settings import Display, Settings
 from .marking import Marking
 
-Spot = tuple[float, float]  # [window units]
+ScreenPoint = tuple[float, float]  # [window units]
 
 
 class MarkingView(SceneView):
@@ -46,7 +46,7 @@ class MarkingView(SceneView):
     def state(self) -> object:
         return super().state, id(self._marking.positions)
 
-    def places(self) -> dict[int, Spot]:
+    def places(self) -> dict[int, ScreenPoint]:
         """The places of the marks on the visible side, by number."""
         numbers = list(self._marking.marks.places)
         points, normals = self._marking.seen(numbers)
@@ -61,7 +61,7 @@ class MarkingView(SceneView):
 
 def places_in(
     area: tuple[float, float, float, float], camera: render.OrbitCamera, points: npt.ArrayLike
-) -> list[Spot]:
+) -> list[ScreenPoint]:
     """Project points (n, 3) by a camera whose picture fills an area of the window [units]."""
     left, top, width, height = area
     seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))

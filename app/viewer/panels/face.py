@@ -170,8 +170,8 @@ class ControlRows:
         self._draw_menu(row)
         if pointed:
             meant = (*pointed, *(row.sides if row.is_linked else ()))
-            shares = (Counter(session.scene.moved_by(each)) for each in meant)
-            self._view.pointed = reduce(or_, shares)  # the largest share of each muscle
+            weights = (Counter(session.scene.moved_by(each)) for each in meant)
+            self._view.pointed = reduce(or_, weights)  # the largest share of each muscle
 
     def _draw_menu(self, row: Row) -> None:
         """Draw the menu of a bar, if it was opened in this row."""

@@ -178,8 +178,8 @@ class Stage:
         left, bottom, width, height = area
         if display.compare == "off" or width < 2:  # a side would have less than a pixel
             return [Viewport(self.refined if display.is_refined else self.static, area)]
-        least_share = 0.08  # smallest share of the picture for each side
-        share = min(max(display.share, least_share), 1.0 - least_share)
+        least_fraction = 0.08  # smallest share of the picture for each side
+        share = min(max(display.share, least_fraction), 1.0 - least_fraction)
         middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
@@ -231,17 +231,17 @@ class Stage:
 
 
 def pointed_lines(
-    scene: Drawable, shares: Mapping[str, float], clarity: float = 0.9
+    scene: Drawable, weights: Mapping[str, float], clarity: float = 0.9
 ) -> list[render.Lines]:
     """Return the fibres of a control's muscles; muscles with larger weights are more opaque.
 
-    shares: name of a muscle -> its weight; a name without side means both sides. clarity: the
+    weights: name of a muscle -> its weight; a name without side means both sides. clarity: the
     opacity of the muscle with the largest weight.
     """
-    face = scene.face if shares else None
+    face = scene.face if weights else None
     fibres = {} if face is None else face.simulation.anatomy.courses()
     seen: dict[str, float] = {}
-    for name, share in shares.items():
+    for name, share in weights.items():
         for side in (name, f"{name}_left", f"{name}_right"):
             if side in fibres:
                 seen[side] = max(share, seen.get(side, 0.0))

@@ -27,7 +27,7 @@ STEP = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it furth
 MOST_STEPS = 6  # in one frame: after a stall, the window catches up a tenth of a second
 # A step may be taken early by this share of its length: frames of a 60 Hz screen that are slightly
 # late or early then get one step each, so motion does not stutter.
-EARLY_SHARE = 0.25
+EARLY_FRACTION = 0.25
 CALM_SECONDS = 0.15  # [s] without change until physics rests, and the scene has full detail
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 
@@ -84,12 +84,12 @@ class FrameTimes:
 
 
 class Clock:
-    """Counts the due steps; remaining time is kept for the next call."""
+    """Counts the steps that are due; the remaining time counts in the next call."""
 
     def __init__(self) -> None:
         self._owed = 0.0
 
-    def steps(self, elapsed: float, early: float = EARLY_SHARE) -> int:
+    def steps(self, elapsed: float, early: float = EARLY_FRACTION) -> int:
         """Return the number of due steps after `elapsed` more seconds, MOST_STEPS at most.
 
         early: fraction of its length by which a step may be taken early.
@@ -147,9 +147,9 @@ class Physics:
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. Raises UserError if the simulation failed.
         """
-        # EARLY_SHARE after a packet of a live face, which must not wait for the next frame.
-        urgent_early_share = 0.95
-        steps = self._clock.steps(seconds, urgent_early_share if is_urgent else EARLY_SHARE)
+        # EARLY_FRACTION after a packet of a live face, which must not wait for the next frame.
+        urgent_early_fraction = 0.95
+        steps = self._clock.steps(seconds, urgent_early_fraction if is_urgent else EARLY_FRACTION)
         session = self._session
         scene = self._session.scene
         wanted = session.current

@@ -1,4 +1,4 @@
-"""Keeps unsaved work if a signal, a crash or a closed terminal ends the window.
+"""Keep unsaved work if a signal, a crash or a closed terminal ends the window.
 
 A script beside the settings stores the work, with a pose by hand as a key. It is written some
 seconds after a change, and when a signal stops the process. It is removed when the work is saved or

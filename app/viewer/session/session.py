@@ -68,7 +68,7 @@ class Session:
             self._moved |= names
 
     def toggle_alone(self, name: str) -> None:
-        """Show this control alone at its limit; if it is shown already, show the neutral face."""
+        """Show this control alone at its limit; if that is already so, show the neutral face."""
         pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
@@ -233,9 +233,10 @@ class Session:
             )
 
     def set_key(self, names: Iterable[str] | None = None) -> float:
-        """Make the current face a key; returns its time [s].
+        """Set a key with the current face; return its time [s].
 
-        names: the controls to key, None for a whole pose. Other controls keep their values by hand.
+        names: the controls that get keys; None for a whole pose. Other controls keep the values
+        that the user has set.
         """
         self._refuse_while_recording()
         time = self._key(self.current, names)

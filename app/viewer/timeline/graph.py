@@ -26,7 +26,7 @@ VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (
 
 
 class Hit(NamedTuple):
-    """The curve at a place in the graph, and its key there if any."""
+    """The curve under a point of the graph, and the key there, if there is one."""
 
     curve: Track
     value: float

@@ -139,8 +139,8 @@ class TrackPainter:
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        most_covered_share = 0.5  # of the row's width: with more, keys are too dense
-        is_dense = len(marks) * 2.0 * size > most_covered_share * (self._high - self._low)
+        most_covered_fraction = 0.5  # of the row's width: with more, keys are too dense
+        is_dense = len(marks) * 2.0 * size > most_covered_fraction * (self._high - self._low)
         seen = marks[:0] if is_dense and len(track.channel) else marks
         accent = ink_of(self._theme.accent)
         for xs, reach, fill in ((seen, size, ink), (chosen, 1.2 * size, accent)):

@@ -124,7 +124,7 @@ class KeySelection:
         return f"{controls} keyed at {time:.2f} s"
 
     def key_whole_pose(self) -> Message:
-        """Make the current face a key of all controls at the current time."""
+        """Set keys for all controls, with the current face, at the current time."""
         time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)

@@ -1,4 +1,4 @@
-"""The part of the script that the timeline displays; converts between times and places."""
+"""The part of the script that the timeline displays; it converts between times and x."""
 
 from __future__ import annotations
 
@@ -81,8 +81,8 @@ class TimeAxis:
         """Return the times of visible ticks [s], and whether each has room for a label."""
         wide = (step for step in TICK_STEPS[1:] if step >= self.seconds(label_width))
         labelled = next(wide, TICK_STEPS[-1])
-        least_tick_share = 0.12  # distance of ticks, relative to a label's width
-        least = self.seconds(least_tick_share * label_width)
+        least_tick_ratio = 0.12  # distance of ticks, relative to a label's width
+        least = self.seconds(least_tick_ratio * label_width)
         parts = ((s, labelled / s) for s in TICK_STEPS if least <= s < labelled)
         finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # divides evenly
         marked = finer[0] if finer else labelled

@@ -61,7 +61,7 @@ class Mode(Protocol):
         """Draw the panels, and give the picture its place."""
 
     def rest(self) -> None:
-        """Stop the sound, because the window waits for an event."""
+        """Stop the sound while the window sleeps."""
 
     def drop(self, paths: Sequence[str]) -> Message:
         """Open files that were dropped onto the window."""
