@@ -87,9 +87,9 @@ class Skeleton:
 
     def _add(self, bone: str, parent: str | None) -> int:
         """Add a bone's node, with its motion relative to the parent."""
-        local = self._places(bone)
+        local = self._motions(bone)
         if parent is not None:
-            local = np.linalg.inv(self._places(parent)) @ local
+            local = np.linalg.inv(self._motions(parent)) @ local
         shift = METRES * (self.pivot(bone) - self.pivot(parent))
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
