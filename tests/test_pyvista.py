@@ -152,7 +152,7 @@ def padded(cells):
 
 
 def test_cells_that_are_no_triangles():
-    """Beside lines and lone points, every triangle has the data of its own cell."""
+    """Triangles keep the data of their cells if the mesh also has lines and single points."""
     points = np.array([[0, 0, 0], [0.5, 0.5, 0], [1, 0, 0], [1.01, 0, 0], [0.5, 1, 0.3]], float)
     mesh = pyvista.PolyData(points, padded([[0, 1, 2], [1, 3, 2], [0, 4, 1]]))
     mesh.cell_data["region"] = [1, 2, 3]

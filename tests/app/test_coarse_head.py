@@ -114,7 +114,7 @@ def test_smile_of_the_coarse_head_lifts_the_corners(scene):
 
 
 def test_refined_coarse_head_has_no_crack(scene):
-    """In strongly bent poses no look has a crack, and each look makes more triangles."""
+    """In strongly bent poses the refined head has no crack, and more triangles, in any look."""
     for look in PRESETS:
         refiner = refiner_for(scene, Refinement(look))
         for pose in ({}, {"joy": 1.0}, {"jaw_open": 1.0}, {"mouthPucker": 1.0}, {"fear": 1.0}):

@@ -58,7 +58,7 @@ def test_a_sample_follows_from_seed_and_number_alone(seed, index):
 
 @pytest.fixture(scope="module")
 def many() -> list[Sample]:
-    """Samples enough that a share of a third has a standard deviation of 0.01."""
+    """Samples enough that a fraction of a third has a standard deviation of 0.01."""
     return [draw(TABLE, 1, index) for index in range(2000)]
 
 

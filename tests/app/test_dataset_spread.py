@@ -114,7 +114,7 @@ def test_the_reader_reads_both(loose, packed, kind):
     assert persons[0].isdisjoint(persons[1])
 
 
-def test_the_page_reads_a_set_as_it_says(loose, tmp_path):
+def test_the_example_of_the_page_reads_a_set(loose, tmp_path):
     """The page's example lines run in any folder, with numpy and Pillow alone."""
     page = (Path(__file__).parents[2] / "docs" / "dataset.md").read_text("utf-8")
     blocks = re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)

@@ -95,7 +95,7 @@ def test_other_versions_and_every_torn_packet_are_none():
     assert parse_live_link(packet + b"\0") is None
 
 
-def test_a_name_is_shown_only_as_far_as_it_can_be():
+def test_an_unprintable_name_is_shortened():
     """Control characters and very long names are not shown in the window."""
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame.subject.isprintable()

@@ -7,7 +7,8 @@ from risorius.app.recordings.mapping import chosen, controls_of
 from risorius.app.recordings.names import EYE_ANGLES
 
 
-def test_angles_become_shares_of_the_range_of_neck_and_eyes():
+def test_angles_become_fractions_of_the_range_of_neck_and_eyes():
+    """An angle becomes a control: its fraction of the greatest angle of neck or eye."""
     angles = {"head_yaw": 45.0, "head_pitch": -15.0, "head_roll": 30.0, "eye_yaw_left": 15.0}
     assert controls_of(angles) == pytest.approx(
         {"head_yaw": 1.0, "head_pitch": -0.5, "head_roll": 1.0, "gaze_horizontal_left": 0.5},

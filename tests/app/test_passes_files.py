@@ -98,9 +98,9 @@ def test_the_colours_are_those_without_passes(tmp_path):
 
 
 def test_no_input_is_written_over(tmp_path):
-    """For a recording take.json and a picture take.png, the numbers' file is refused.
+    """A picture take.png of a recording take.json is refused.
 
-    It would replace the recording.
+    The labels of this picture, take.json, would replace the recording.
     """
     recording = tmp_path / "take.json"
     recording.write_text("[]")

@@ -62,7 +62,7 @@ UNITS = {
 
 @pytest.mark.parametrize("kind", UNITS)
 def test_units(kind, tmp_path):
-    """Values in all units become shares of 0 to 1, and a guessed unit is reported."""
+    """Values in all units become fractions of 0 to 1, and a guessed unit is reported."""
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}

@@ -41,7 +41,7 @@ class Maker:
         return points[used] + off * normals[used], number.reshape(-1, 3)
 
     def ball(self, side: str, share: float, forward: float) -> tuple[Points, Faces]:
-        """A ball in an eye with this share of its radius, moved forward by shares of the radius."""
+        """A ball in an eye with this fraction of its radius, moved forward by fractions of it."""
         eye = next(each for each in self.scene.face.head.eyes if each.name == side)
         ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
         centre = eye.centre + np.array([0.0, 0.0, forward * eye.radius])

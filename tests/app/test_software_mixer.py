@@ -33,10 +33,10 @@ def studio() -> Iterator[Capture]:
 
 @pytest.fixture
 def share_off(studio, monkeypatch):
-    """A function of camera, style and anatomy, for the share of visibly different pixels."""
+    """A function of camera, style and anatomy, for the fraction of visibly different pixels."""
 
     def measured(camera="front", style=None, anatomy=None):
-        """Shares of pixels over 8 levels apart: of both mixers, and with and without smoothing."""
+        """Fractions of pixels over 8 levels apart: of both mixers, with and without smoothing."""
         view = camera if isinstance(camera, render.OrbitCamera) else None
         studio.camera = view or camera_for(studio.scene, camera)
         style = style or studio.options.style

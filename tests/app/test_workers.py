@@ -52,7 +52,7 @@ def is_running(process):
     return state != "Z"
 
 
-def test_every_share_is_done_in_another_process():
+def test_every_part_is_done_in_another_process():
     """Each share is done in a process other than this one, and messages arrive in order."""
     shares = [[1, 2, 3], [10, 20], []]
     found = list(run_all(working.double, shares))

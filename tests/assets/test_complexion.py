@@ -268,8 +268,8 @@ def test_the_dark_edge_of_irises_fades_with_age():
 
 
 @pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])
-def test_irises_follow_the_shares_where_skin_is_light(angle):
-    """In light skin, iris colours are as frequent as the given shares; dark skin has brown only."""
+def test_irises_have_the_given_frequencies_where_skin_is_light(angle):
+    """In light skin, iris colours are as frequent as given; dark skin has brown only."""
     random = np.random.default_rng(3)
     drawn = [drawn_irises(random, angle, {"brown": 1.0, "blue": 3.0}) for _ in range(400)]
     assert (0.68 < drawn.count("blue") / 400 < 0.82) if angle > 28.0 else set(drawn) == {"brown"}
@@ -333,7 +333,7 @@ def test_hair_turns_grey_as_in_the_survey():
     """
 
     def grey(angle, years):
-        """The mean grey share of persons with these ages and equal other features."""
+        """The mean fraction of grey hair of persons with these ages and equal other features."""
         random = np.random.default_rng(2)
         ages = random.uniform(*years, 300)
         drawn = [sample_identity(1, age=float(age)) for age in ages]

@@ -45,7 +45,7 @@ def test_map_reproduces_the_coarse_mesh(head, fine):
 def test_children_stand_in_the_place_of_their_parent(head, fine):
     """Face k of the fine mesh lies in face k / 4^level of the coarse mesh.
 
-    It covers its share of the area.
+    It covers its part of the area.
     """
     share = len(fine.faces) // len(head.faces)
     flat = fine.interpolate(head.vertices)

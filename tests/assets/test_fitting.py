@@ -318,8 +318,8 @@ def test_meshes_that_are_no_surface_are_named(other, change, message):
         fit(Mesh(other.mesh.vertices, faces), other.landmarks)
 
 
-def test_pieces_that_are_left_away_may_be_anything(other):
-    """Pieces that are left out may be no valid surface; the skin keeps its vertex indices."""
+def test_pieces_that_are_left_out_may_be_anything(other):
+    """Pieces that are left out need not be valid surfaces; the skin keeps its vertex indices."""
     mesh = with_card(other.mesh)
     head = fit(mesh, other.landmarks)
     assert np.array_equal(head.file_vertices, np.arange(len(other.mesh.vertices)))

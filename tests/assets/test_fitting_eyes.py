@@ -198,7 +198,10 @@ def sleeper() -> FittedHead:
 
 
 def test_shut_eyes_are_accepted_and_reported(sleeper):
-    """Such a head was refused: "the right eye has no opening"."""
+    """A head with shut eyes is accepted, and a note reports the eyes.
+
+    It was refused before: "the right eye has no opening".
+    """
     (note,) = [each for each in sleeper.notes if "shut" in each]
     assert "right and left eyes are shut at rest" in note
 

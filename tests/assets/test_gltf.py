@@ -66,8 +66,8 @@ def painted(maker, uv, texture=None, **more):
 
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
-def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
-    """Normalized bytes and shorts are shares of the type's maximum."""
+def test_texture_coordinates_may_be_normalized_integers(maker, tmp_path, kind, greatest):
+    """Normalized bytes and shorts are fractions of the type's maximum."""
     rows = np.rint(UV * greatest) if greatest > 1 else UV
     painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
     found = read(maker, tmp_path)

@@ -266,7 +266,7 @@ def test_person_is_a_sound_head(person, head):
 
 
 def test_expressions_work_on_persons(person, head, request):
-    """A person stays still at rest with closed lips, laughs, and shuts the eyes."""
+    """A person is still at rest, with closed lips; expressions move it as they move the head."""
     simulation = sim.create(person)
     usual = sim.create(head)
     for _ in range(30):

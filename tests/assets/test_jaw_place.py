@@ -34,7 +34,7 @@ def test_without_ears_no_axis_is_found(head):
 
 
 def test_the_opening_grows_with_the_mandible(head):
-    """Heads of any size open by the same share of the distance from axis to teeth."""
+    """Heads of any size open by the same fraction of the distance from axis to teeth."""
     points = head.vertices[head.landmarks]
     rig = opening_as_people(head.rig, head.jaw_axis, points)
     angle = np.radians(rig["jaw"]["opening_deg"])

@@ -69,8 +69,8 @@ def test_lines_get_more_and_deeper_with_age_and_in_men():
     assert man > 1.05 * woman
 
 
-def test_patterns_have_their_published_shares():
-    """Patterns of foreheads, frowns and crow's feet have nearly their published shares."""
+def test_patterns_have_their_published_frequencies():
+    """Patterns of foreheads, frowns and crow's feet have nearly their published frequencies."""
     lines = people(50.0)
     spreads, frowns, fans = (
         Counter(getattr(x, name) for x in lines) for name in ("spread", "frown", "fan")

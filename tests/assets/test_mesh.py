@@ -107,7 +107,7 @@ def test_outline_of_the_crown_is_smooth(head):
 
 
 def test_head_is_closed_behind(head):
-    """The head's rim is at the collar only: it is low, and closed from back to front."""
+    """The only border of the mesh is at the collar: it is low, and closed from back to front."""
     rim = head.vertices[head.rings["rim_left"]]
     assert rim[:, 1].max() < -130.0
     assert rim[0, 0] == rim[-1, 0] == 0.0

@@ -167,7 +167,7 @@ def test_ply_files_may_hold_strips(tmp_path, form):
     ],
 )
 def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, names):
-    """Colours are read as integers of 8 or 16 bits or as shares, with all usual names."""
+    """Colours are read as integers of 8 or 16 bits or as fractions, with all usual names."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
     path.write_bytes(ply(form, HOUSE, **colours))

@@ -50,7 +50,7 @@ def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkey
     assert np.abs(found.vertices[:, 1].min() - with_body.vertices[:, 1].min()) < 5.0
 
 
-def test_a_dense_head_leaves_its_body_a_share(with_body, head, monkeypatch):
+def test_a_dense_head_leaves_triangles_to_its_body(with_body, head, monkeypatch):
     """If the head alone exceeds the limit, head and body are simplified and stay connected."""
     monkeypatch.setattr(simplifying, "SIMPLIFIED", 1800)
     found = simplifying.simplified(with_body, head.vertices[head.landmarks])

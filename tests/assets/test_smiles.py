@@ -1,4 +1,4 @@
-"""Smiles of persons: shares of muscles in AU12 and joy alone, and lips that follow."""
+"""Smiles of persons: weights of muscles in AU12 and joy alone, and lips that follow."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from risorius.assets.loading import load
 
 
 def test_smiles_change_two_rows_within_their_limits():
-    """Smiles change the rows AU12 and joy only, and keep their shares between 0 and 1.
+    """Smiles change the rows AU12 and joy only, and keep their weights between 0 and 1.
 
     The usual smile changes nothing.
     """

@@ -74,7 +74,7 @@ def test_a_known_head_is_fitted_without_a_landmark_file(tmp_path):
 
 
 def test_the_table_is_sound():
-    """Each entry has 68 existing vertices, and edge lengths as shares of the face."""
+    """Each entry has 68 existing vertices, and edge lengths relative to the face."""
     assert len(TABLE) >= 3
     for row in TABLE:
         fewest = min(vertices for vertices, _ in row["counts"])

@@ -33,7 +33,7 @@ def labels_of_face(yaw=0.0, mask="none"):
     }
 
 
-def test_an_error_is_a_share_of_the_distance_of_the_eyes():
+def test_an_error_is_relative_to_the_distance_of_the_eyes():
     """An error of two pixels for eyes 40 pixels apart is 5 %, sideways as well as downward."""
     errors = landmarks.errors_of(FACE + np.array([2.0, -1.0]), labels_of_face())
     assert np.allclose(errors, [5.0, -2.5])

@@ -10,7 +10,7 @@ from tests.refine_gl.agreement import why_no_card
 
 @pytest.mark.slow
 def test_rows():
-    """The requested share of edges is split, and the times of a row fit together."""
+    """The requested fraction of edges is split, and the times of a row fit together."""
     rows = {row.method: row for row in refine.measure(["2k"], 0.05)}
     count = rows["kahler 10 %"].triangles_in
     assert abs(count - 2_000) < 100

@@ -41,7 +41,7 @@ def length(v: Vector) -> float:
 class CurveRules(Rules):
     """A scheme with fixed vertices; points of split edges lie between chord and curve.
 
-    Geomorph weights are the shares of the curve.
+    Geomorph weights are the weights of the curve.
     """
 
     positions: list[Vector]

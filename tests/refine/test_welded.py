@@ -215,7 +215,7 @@ def test_seams_equal_but_for_the_last_bits(kind, moved):
 
 
 def test_how_far_apart_welded_vertices_may_lie():
-    """The tolerance of welding is a share of the mesh's size: 1e-9 by default.
+    """The tolerance of welding is relative to the mesh's size: 1e-9 by default.
 
     A tolerance of 0 joins equal points only.
     """

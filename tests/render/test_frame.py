@@ -155,8 +155,8 @@ def test_parts_under_opened_skin_are_seen_through_it(renderer):
     assert np.array_equal(whole, picture(renderer, render.Frame(view, PLAIN, wall)))
 
 
-def test_fewer_samples_after_more_leave_no_hole():
-    """The inner side of a mesh is drawn with one sample per pixel, also after four samples."""
+def test_a_change_of_samples_leaves_no_hole():
+    """With one sample per pixel, a mesh's inner side is drawn before and after four samples."""
     with render.open_offscreen((96, 96), samples=4) as surface:
         renderer = render.Renderer(surface)
         camera = facing()

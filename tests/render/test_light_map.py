@@ -65,7 +65,7 @@ def test_the_sun_is_the_key_wherever_it_is_turned():
 
 
 def test_any_unit_gives_the_same_picture():
-    """Maps in nits and in shares of white give the same light, because maps are exposed."""
+    """Maps in nits and in fractions of white give the same light, because maps are exposed."""
     radiance = render.LIGHT_MAPS["room"].radiance
     light = render.LightMap(radiance).light()
     other = render.LightMap(1000.0 * radiance).light()

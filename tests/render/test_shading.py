@@ -69,7 +69,7 @@ def test_inner_side_is_dark_flesh(surface):
 
 
 def fading(renderer, shape, shares, inner):
-    """A shape with fading shares at its vertices; `inner` below 0 hides its inner side."""
+    """A shape with opacities at its vertices; `inner` below 0 hides its inner side."""
     stream = lent(renderer, shape, columns=18)
     stream.vertices[:, 16] = shares
     stream.vertices[:, 17] = inner
@@ -79,7 +79,7 @@ def fading(renderer, shape, shares, inner):
 
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
-    """Skin is opaque for a share of 1, half transparent for 0.5, and missing for 0.
+    """Skin is opaque for an opacity of 1, half transparent for 0.5, and missing for 0.
 
     Wires are drawn in the same way.
     """

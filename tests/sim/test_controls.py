@@ -61,7 +61,7 @@ def test_activation_follows_without_overshoot():
 def test_sums_of_values_are_those_of_a_face_that_takes_them(controls):
     """Sums of given values are those of a face with these values, without setting anything.
 
-    They include shares and floors of layers.
+    They include weights and floors of layers.
     """
     controls.pose({"AU12": 0.4, "jawOpen": 0.3, "mouthClose": 0.2, "AU46_left": 1.0})
     before = controls.values

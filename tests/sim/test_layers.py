@@ -61,7 +61,7 @@ def wanted(subject, **values):
     return subject.sums
 
 
-def test_rows_share_into_the_layers_below():
+def test_rows_add_to_the_layers_below():
     """A row scales its entries through every layer, down to the muscles."""
     subject = controls(UNITS, FACES)
     assert wanted(subject, both=1.0) == approx(sums_of(0.4, 0.4, 0.3, 0.25))
@@ -92,7 +92,7 @@ SHARED = layer(
 
 
 @given(part=st.floats(0.0, 1.0), whole=st.floats(0.0, 1.0))
-def test_a_share_counts_as_part_of_the_whole(part, whole):
+def test_a_fraction_counts_as_part_of_the_whole(part, whole):
     """A share is its part divided by the whole, at most 1, also when the whole is near 0.
 
     It never jumps.
@@ -107,7 +107,7 @@ def test_a_share_counts_as_part_of_the_whole(part, whole):
     assert abs(near - share) < 2e-4 / LEAST_WHOLE
 
 
-def test_a_share_follows_the_whole_that_is_set_later():
+def test_a_fraction_follows_the_whole_that_is_set_later():
     """A share follows its whole in any order of setting, and everything it moves follows."""
     subject = controls(SHARED)
     subject.set_all({"part": 0.3})
@@ -189,7 +189,7 @@ def test_a_wrong_row_is_named(rows, message):
 def test_a_row_cannot_use_a_fraction():
     """A row cannot use a control that is a fraction of another one.
 
-    A share depends on set values, which a row in a higher layer does not have.
+    A fraction depends on set values, which a row in a higher layer does not have.
     """
     with pytest.raises(ValueError, match=r"'above', 'part': is a fraction of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))

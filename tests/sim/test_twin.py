@@ -97,7 +97,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
 
 
 def _sealed_speeds(skin, state, grip, h):
-    """Velocities after the seal acts on all pairs at once, each with its share of masses."""
+    """Velocities after the seal acts on all pairs at once, each with its part of the masses."""
     lips = skin.lips
     mass = skin.mass
     rest = skin.rest

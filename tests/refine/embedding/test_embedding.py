@@ -235,7 +235,7 @@ def test_groups_keep_their_shape_and_go_with_their_root():
     assert_allclose(moved[:, 0], alone.positions, atol=1e-12)
 
 
-def test_given_places_are_taken_as_they_are():
+def test_given_places_replace_the_search():
     """An embedding with the places of another embedding has the same motion.
 
     Places are given per vertex or per group.

@@ -128,7 +128,7 @@ def test_any_history_is_crack_free(seed, history):
     assert history_of(refiner).states.max() == 0
 
 
-def test_states_are_all_the_memory():
+def test_states_contain_the_whole_history():
     """The states, one number per triangle, contain the whole history.
 
     A new refiner with these states makes the same frames.

@@ -109,7 +109,7 @@ def test_bits_among_many_neighbours_and_on_a_folded_sheet(splits):
 
 
 def test_a_matrix_moves_every_point_and_normal():
-    """Each first-level point is 3/8, 3/8, 1/8, 1/8 of the frame's vertices, compared with numpy.
+    """Each first-level point is the mean of vertices with weights 3/8, 3/8, 1/8, 1/8, as by numpy.
 
     Its normal is the mean of the normals at both ends.
     """
