@@ -57,13 +57,13 @@ def bench() -> None:
     "--threads",
     "pairs",
     flag_value="threads",
-    help="Time pairs of frames: one by one thread, one by all.",
+    help="Time pairs of frames: with a single thread, and with all threads.",
 )
 @click.option(
     "--matrix",
     "pairs",
     flag_value="matrix",
-    help="Time pairs of frames: one by kahler, one by a kept Loop matrix.",
+    help="Time pairs of frames: by kahler, and by a stored Loop matrix.",
 )
 def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: str | None) -> None:
     """Time refinement of the face and of meshes with up to a million triangles."""

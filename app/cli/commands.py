@@ -83,7 +83,7 @@ class Live:
 
 
 @click.command(cls=GroupedCommand)
-@click.option("--size", type=Size(), help="Size of the window; by default as it was last.")
+@click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--scene", type=SCENE_NAMES, help="The scene to animate; by default the face.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
@@ -148,7 +148,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 
 @click.command(cls=GroupedCommand)
 @click.argument("script", type=PATH)
-@click.option("--size", type=Size(), help="Size of the window; by default as it was last.")
+@click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND
 @QUIET

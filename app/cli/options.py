@@ -247,8 +247,8 @@ PLAYBACK = (
     click.option(
         "--neutral",
         metavar="HOW",
-        help="The face at rest, which is subtracted: first:1, the median of the first second; "
-        "percentile, the 5th of each channel; or none. The default depends on the kind of file.",
+        help="The face at rest, which is subtracted: first:1 (median of the first second), "
+        "percentile (the 5th of each channel) or none. The default depends on the kind of file.",
     ),
     GAIN,
     MIRROR,
@@ -257,7 +257,7 @@ PLAYBACK = (
         type=FiniteRange(0, 0.5),
         default=LEAD,
         show_default=True,
-        help="Time by which muscles move before the recording [s]: skin follows muscles late.",
+        help="Time by which muscles move before the recording [s], because skin follows them late.",
     ),
     click.option("--face", metavar="ID", help="The face to read, if the file has several."),
     click.option(
