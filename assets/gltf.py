@@ -33,7 +33,7 @@ class GltfSurface:
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
     same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the same
     triangles with the vertex indices of the file, shape (F, 3). texture: pictures and their places;
-    None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8; None without any.
+    None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8, or None.
     has_colour: flags of vertices with a colour, shape (V,).
     """
 

@@ -26,7 +26,7 @@ class PlySurface:
     """The surface of a PLY file.
 
     vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
-    colours: colours of the vertices, shape (V, 3), uint8; None without any.
+    colours: colours of the vertices, shape (V, 3), uint8, or None.
     """
 
     vertices: Floats64

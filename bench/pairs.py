@@ -1,10 +1,11 @@
-"""Time frames of refinement in pairs: by one thread and by all, or beside a stored sparse matrix.
+"""Time frames of refinement in pairs.
 
-Both frames of a pair by threads have bit-identical results (refine/mesh/threads.py).
+One kind of pair compares one thread with all threads; both frames have equal bits
+(refine/mesh/threads.py). The other kind compares our refiner with a stored sparse matrix.
 
-If every edge is split once, one level of Loop subdivision is a matrix, the same in all frames. The
-rivals multiply positions by this matrix, which libigl's `loop_matrix` makes: one in scipy, the
-other in a plain loop over rows in numba. Our refiner also makes normals; the rivals do not.
+If every edge is split once, one level of Loop subdivision is a matrix, the same in all frames. Two
+rivals multiply positions by this matrix, which libigl's `loop_matrix` makes: scipy, and a plain
+loop over rows in numba. Our refiner also makes normals; the rivals do not.
 """
 
 from __future__ import annotations

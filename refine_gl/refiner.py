@@ -112,7 +112,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         settings: Settings,
         **values: Unpack[Values],
     ) -> None:
-        """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames without any.
+        """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames whose caller has none.
 
         Raises GpuError if the driver refuses a shader, or a mesh of this size.
         """

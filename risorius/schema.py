@@ -193,11 +193,11 @@ def read(
     *,
     error: type[Exception] = ValueError,
 ) -> Read:
-    """A record, or a value of another type, from the content of a file.
+    """Convert the content of a file to a record, or to a value of another type.
 
-    where: the name in errors, of a file or of a part of a file.
+    where: the file, or the part of it, for error messages.
 
-    Raises `error` with one line: where, the value, and the allowed values.
+    Raises `error`, whose line has `where`, the value, and the allowed values.
     """
     try:
         return cast(Read, _adapter(kind).validate_python(document))

@@ -44,7 +44,10 @@ class LipPairs(NamedTuple):
     members: Integers32  # (M,) all vertices in pairs
 
     def apart(self, values: Floats64) -> Floats64:
-        """Values (V, 3) at the vertices of all P pairs, minus values at their points, (P, 3)."""
+        """Return for each pair the value at the vertex, minus the value at the point, (P, 3).
+
+        values: of all vertices, (V, 3).
+        """
         a, b = self.beside.T
         weight = self.weight[:, None]
         apart: Floats64 = values[self.vertex] - weight * values[a] - (1.0 - weight) * values[b]

@@ -2,7 +2,7 @@
 
 foundation.py checks the head and places the bones.
 
-Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
+Source: Kähler et al. 2002, "Head shop": the model is fitted to a head only by landmarks.
 """
 
 from __future__ import annotations

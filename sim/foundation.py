@@ -3,7 +3,7 @@
 A head may be any object with `vertices` and `faces`; optional attributes add the parts of a face.
 Nothing here is compiled, so the controls of a head are available at once.
 
-Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
+Source: Kähler et al. 2002, "Head shop": the model is fitted to a head only by landmarks.
 """
 
 from __future__ import annotations

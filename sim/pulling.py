@@ -8,23 +8,25 @@ change, and the rest of the face should not move. Minimise, over the controls u 
 
 i runs over the vertices under the finger, with targets t and weights s that add up to 1; d is the
 mean distance to the targets. j runs over all other vertices, with areas a relative to the area
-under the finger. A reduces distances along the line of sight, which a mouse does not determine.
-Prices keep controls moderate. Few controls are used: first the control that reduces the sum most,
-then the control that reduces it most together with the first, and so on. The slopes at the start
-decide this. So the controls depend only on the targets, not on the path of the finger: the pose
-during the motion is the pose that stays. A target beyond the reach of the strongest control in this
-direction is moved back to that reach, because prices grow with d: farther out no control would be
-worth its price.
+under the finger. The matrix A gives distances along the line of sight a small weight, because a
+mouse does not determine them. PRICE and EFFORT keep changes of controls small.
 
-Because of prices and of the rest of the face, the skin does not quite reach the mouse. So in the
-end all changes are multiplied by one factor, until the finger's middle is as near to the mouse as
-possible, or until a control is at its limit. One factor keeps the ratios of controls: a smile that
-is drawn too far remains a smile.
+Few controls are used. The first is the control that reduces the sum most. The second is the control
+that reduces the sum most together with the first, and so on. The slopes at the start determine the
+choice. So the controls depend only on the targets, not on the path of the finger, and the pose
+stays when the finger is released.
+A target beyond the reach of the strongest control is moved back to this reach, because the price
+grows with d, and no control would be used farther out.
+
+The price and the rest of the face keep the skin from reaching the mouse. So all changes are finally
+multiplied by one factor, until the finger's centre is as near to the mouse as possible, or until a
+control is at its limit. The factor keeps the ratios of controls: a smile that is pulled too far
+remains a smile.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
-lag, so this takes six steps of 0.3 ms. The slopes include effects that the linearised springs lack:
-lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
+lag, so the skin comes to rest in six steps of 0.3 ms. The slopes include effects that linearised
+springs lack: lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. With prices the
 problem is an elastic net (Zou, Hastie 2005), solved by coordinate descent (Friedman et al. 2007);

@@ -50,7 +50,7 @@ class SetFolder:
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume a set; within this context, lock the folder.
 
-        options: all options that decide on the samples, as JSON values. Raises UserError if the
+        options: all options that determine the samples, as JSON values. Raises UserError if the
         folder holds something else, or a set that was begun with other options.
         """
         check_links(self.path)

@@ -1,4 +1,4 @@
-"""The request for a data set: all options that decide on its samples, except their number."""
+"""The request for a data set: all options that determine its samples, except their number."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class SetRequest:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """Return the options that decide on samples, as JSON values; a resumed set keeps them."""
+        """Return the options that determine samples, as JSON values; a resumed set keeps them."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {

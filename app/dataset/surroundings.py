@@ -44,7 +44,7 @@ class Backgrounds:
 
     @property
     def options(self) -> Any:
-        """The options that decide on backgrounds, as JSON values."""
+        """The options that determine backgrounds, as JSON values."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
         return {"pictures": len(self.pictures), "content": _digest(self.pictures)}
@@ -109,7 +109,7 @@ class LightFiles:
 
     @property
     def options(self) -> Any:
-        """The options that decide on lights, as JSON values."""
+        """The options that determine lights, as JSON values."""
         return _digest(self.paths) if self.paths else None
 
 

@@ -92,7 +92,7 @@ def resolved(address: str) -> str:
 
 
 def own_address() -> str:
-    """Return this computer's address in the network, or "" without one; nothing is sent."""
+    """Return this computer's address in the network, or "" if it has none; nothing is sent."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         try:
             documentation_address = "192.0.2.1"  # unused: reserved for documents (RFC 5737)

@@ -163,7 +163,7 @@ class Idle:
 
         moved: lowest controls (sim/layers.py) that something else moves. viewer: position of the
         viewer [mm], shape (3,). is_still: whether the face only looks at the viewer. opening:
-        opening of the jaw, 0 to 1; the head nods with it, and so on stressed syllables.
+        opening of the jaw, 0 to 1; the head nods when the jaw opens, as on stressed syllables.
         """
         face = self.scene.face
         if face is None:

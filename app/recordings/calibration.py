@@ -77,7 +77,7 @@ def calibration_for(
     gains: Iterable[str] = (),
     mirror: bool = False,
 ) -> Calibration:
-    """Return the calibration of a take; its kind decides on neutral face and gains by default.
+    """Return the calibration of a take; its kind determines neutral face and gains by default.
 
     neutral: "first:SECONDS", "percentile" or "none". gains: factors as "NAME=x", where NAME may be
     a pattern as mouth*. Raises UserError for any other value.
@@ -92,7 +92,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     method: "first:SECONDS", the median of the first seconds; "percentile", the median of the first
     second for angles of the head, and the 5th percentile for channels that do not rest at 0; or
     "none". None means "percentile", except for takes under two seconds (no neutral face) and for
-    calibrated takes (angles of the head alone). Raises UserError for another method.
+    calibrated takes (only angles of the head). Raises UserError for another method.
     """
     if method == "none":
         return {}
@@ -144,7 +144,7 @@ def gains_of(
     """Return the gains of `--gain NAME=x ...` by channel, and the gain of all other channels.
 
     NAME is a channel, a pattern (mouth*, *Left), or all; later settings replace earlier ones. kind:
-    kind of recording, which decides on default gains. Raises UserError for a name that fits no
+    kind of recording, which determines default gains. Raises UserError for a name that fits no
     channel.
     """
     names = list(channels)

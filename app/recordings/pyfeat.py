@@ -3,7 +3,7 @@
 Versions differ in the head's angles: versions before 0.7 write degrees, with Pitch + up; later
 versions write radians, with Pitch + down. Yaw + is to the subject's right. Roll + is to the
 subject's left shoulder, in version 2 to the right shoulder. A comparison of angles with landmarks
-in files of py-feat showed this; for version 2 it covered yaw and roll alone. No version gives
+in files of py-feat showed this; for version 2 it covered only yaw and roll. No version gives
 times, only numbers of frames.
 
 Version 2 measures most of the face twice. Its shapes have a side and a strength, its units only a

@@ -1,4 +1,4 @@
-"""Reading of a file into a Take; its content decides on the format, never its name.
+"""Reading of a file into a Take; its content determines the format, never its name.
 
 `TABLES` and `DOCUMENTS` list the formats, the most special first. A new format needs a row here,
 with a function that recognises it and a function that reads it.

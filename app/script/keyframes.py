@@ -48,7 +48,7 @@ def key_time(script: Script, time: float) -> float:
 
 
 def time_beyond(script: Script, time: float, direction: int) -> float:
-    """Return the next key time [s], or the previous for direction -1; `time` without one."""
+    """Return the next key time [s], or the previous one for direction -1; else `time`."""
     all_times = places_of(script).times.values()
     if direction > 0:
         later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)

@@ -1,6 +1,6 @@
 """Find eyeballs in a user's file: pieces that are balls, and sockets that enclose a ball.
 
-A head of few triangles often has neither; then the lids alone give the position of the eyeball
+A head of few triangles often has neither; then only the lids give the position of the eyeball
 (organs.py).
 """
 

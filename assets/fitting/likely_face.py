@@ -61,7 +61,7 @@ class LikelyFace:
         return self.head.vertices + np.tensordot(self._weights, self._modes, 1)
 
     def fit(self) -> None:
-        """Fit the person, in the first steps by the known landmarks alone."""
+        """Fit the person, in the first steps only by the known landmarks."""
         few_steps = 3
         steps = 8  # a further step would move the median guess by less than 0.1 mm
         for step in range(steps):

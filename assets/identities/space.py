@@ -71,7 +71,7 @@ class Identity:
     """The numbers that describe a person's face.
 
     - sex: decides the distribution of the weights.
-    - age: decides this distribution, too [years].
+    - age: also determines this distribution [years].
     - hair: factor on the lengths of the cut.
     - cut: name of the hair cut (`CUTS` of hair.py).
     - weights: weights of the modes [standard deviations of people].

@@ -163,7 +163,8 @@ def quarter_axes(
 ) -> None:
     """Write the directions at the quarters of some edges, shape (N,), from those at the midpoints.
 
-    The first direction is half way between that of the middle and the normal at the near end. So a
+    The first direction is the mean of two: the first direction at the midpoint, and the normal at
+    the near end. So a
     point near a vertex turns with the vertex, not with the edge.
     """
     for e in edges:

@@ -95,7 +95,7 @@ class Displacement(Measuring):
 
 @njit
 def count_turns(sizes: Floats32, turns: Floats32, scale: np.float32) -> None:
-    """Add `turns`, shape (E,), of normals [rad] x length, to `sizes` of edges, as squares."""
+    """Add turns of normals to the sizes of edges: write hypot(size, scale x turn), shape (E,)."""
     for e in range(sizes.shape[0]):
         turn = scale * turns[e]
         sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)

@@ -184,13 +184,13 @@ class Refiner(Protocol):
     ) -> RefinedMesh:
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles.
 
-        `positions` are never written. The result is a view of the arrays of `out`, or, without it,
-        of the refiner's own stream. `view`: for criteria that depend on the eye. `values`:
-        attributes of this frame by name, which replace bound attributes of the same shape, (V, k)
-        for values of vertices. A refiner makes one frame at a time, so each thread needs its own
-        refiner. Do not fork a process while one of its threads compiles: numba's lock would stay
-        locked in the child. (If a first frame was refined before the fork, nothing is left to
-        compile.)
+        `positions` are never written. The result is a view of the arrays of `out`, or of
+        the refiner's own stream if `out` is None. `view`: for criteria that depend on the eye.
+        `values`: attributes of this frame by name, which replace bound attributes of the same
+        shape, (V, k) for values of vertices. A refiner makes one frame at a time, so each thread
+        needs its own refiner. Do not fork a process while one of its threads compiles: numba's lock
+        would stay locked in the child. (If a first frame was refined before the fork, nothing is
+        left to compile.)
         """
 
     @abstractmethod

@@ -71,7 +71,9 @@ def has_area(rest: Floats64, faces: Integers64, sliver: float) -> Flags:
 
 
 def across_edges(mesh: Connectivity, label: Integers64) -> Integers64:
-    """Return the other side of each edge of triangles, 4 x triangle + i, (F, 3); -1 for none.
+    """Return for each side of a triangle the side of its neighbour, (F, 3); -1 for no neighbour.
+
+    Side i of triangle t has the number 4 t + i.
 
     Only edges inside the mesh count, between triangles with the same `label`, shape (F,); -1: no
     label.

@@ -64,7 +64,7 @@ DropTwice = Annotated[float, Option("the same for splitting twice", least=0.0)]
 
 
 class Criterion:
-    """Base class of all criteria, the paper's and your own: a criterion decides on splits.
+    """Base class of all criteria, the paper's and your own: a criterion determines splits.
 
     A subclass defines `measure`, which `mark` calls; it may override `mark` with a faster version.
     All other methods do nothing by default. A refiner calls `set_scheme` and `bind` once, then in

@@ -1,6 +1,6 @@
 """Given splits of edges, the same in all frames: one connectivity for a clip.
 
-Kähler, Haber, Seidel 2003, section 4.1, decide on splits in every frame, so vertices and triangles
+Kähler, Haber, Seidel 2003, section 4.1, determine splits in every frame, so vertices and triangles
 of the output change. Many file formats, and programs that keep data at vertices, need the same
 vertices and triangles in every frame. `splits_of_clip` finds, for each edge, the most splits that
 any frame of a clip needs. The result is still adaptive, and never coarser than a frame that is

@@ -14,8 +14,8 @@ Campagna et al. 1998). They are built once, because the connectivity never chang
               d
 
 An edge is *interior* when exactly two triangles run through it in opposite directions. Every other
-edge (one side, three sides, two sides in the same direction) is a *border*. Boundary rules split
-it; they read only the end points, so all sides agree.
+edge (one side, three sides, two sides in the same direction) is a *border*. Rules for borders
+split it. They read only the end points of the edge, so all triangles at the edge get equal points.
 
 A *crease* is an edge inside the mesh that stays sharp: it is treated as a border (creases.py).
 

@@ -9,7 +9,7 @@ curve. So no crack can open, and no rule rounds it.
 A vertex on a crease has several *sectors*, the triangles around it between one crease and the next:
 
            \  1 /         three creases that meet, and three sectors; curves of edges within a
-            \  /          sector go by the normal of that sector alone
+            \  /          sector go by the normal of that sector only
          0   \/   2
              |            A crease that ends here has one sector, which is all around.
              |

@@ -1,7 +1,7 @@
 """Computations on triangles and colours for several rooms.
 
-All modules need numpy and some numba; mesh_graph.py alone also needs scipy, and `refine/` does
-without it.
+All modules need numpy, and some need numba. Only mesh_graph.py needs scipy; `refine/` does not use
+it.
 
 arrays.py         types of arrays
 carving.py        lines carved into a height map

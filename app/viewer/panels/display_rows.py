@@ -1,4 +1,4 @@
-"""Rows of a panel that set fields of the display: lists and checkboxes, by their labels."""
+"""Rows of a panel that set fields of the display: a label with a list or a checkbox."""
 
 from __future__ import annotations
 

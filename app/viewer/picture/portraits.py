@@ -1,6 +1,6 @@
 """Small pictures of persons for a list; a process of low priority draws each picture once.
 
-Until a picture arrives, the window shows a name alone. The user's cache stores the pictures until
+Until a picture arrives, the window shows only a name. The user's cache stores the pictures until
 the program changes.
 """
 
@@ -65,7 +65,7 @@ class Portraits:
                 self._take((who, image))
         if not missing:
             return
-        # The process may fail, because the list also works with names alone.
+        # The process may fail, because the list also works with names only.
         self._pool.run(draw_portraits, missing, on_message=self._take, attempts=1)
 
     def _take(self, drawn: tuple[int | str, Image]) -> None:

@@ -234,8 +234,8 @@ class IdleLife:
     def is_on(self) -> bool:
         """Whether the face has idle life now.
 
-        A script that is played, recorded or scrubbed moves the face alone until it has ended, and
-        so does a live face until it is lost.
+        There is none while a script is played, recorded or scrubbed, until it has ended, and none
+        while a live face moves the face.
         """
         session = self._session
         if not self._is_wanted() or session.scene.face is None:

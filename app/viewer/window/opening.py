@@ -48,7 +48,7 @@ def open_window(
 
 
 def without_refused_options(display: Display, scene: Scene) -> str:
-    """Refine by the look alone if the scene does not fit the display; return the reason, or ""."""
+    """Use only the look's refinement if the scene refuses the display; return the reason, or ""."""
     try:
         _refine_once(scene, display)
     except UserError as error:
