@@ -1,4 +1,4 @@
-"""Work on a Dask cluster; each Dask worker runs it in processes of its own.
+"""Work on a Dask cluster; each Dask worker does its work in separate processes.
 
 Threads of a Dask worker cannot draw, and Dask reports a crash in a thread as a killed worker. So a
 Dask worker passes its work on to a `WorkerPool`.

@@ -39,7 +39,7 @@ _known: dict[str, SceneLight] = {}  # by name
 def scene_light(name: str) -> SceneLight:
     """Return the light of a name: one of `render.LIGHTS`, or the path of a light map.
 
-    A file is read once, until `open_light` reads it again. UserError for an unusable file.
+    A file is read once; `open_light` reads it again. Raises UserError for an unusable file.
     """
     if name not in _known:
         _known[name] = _light_of(name)

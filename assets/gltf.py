@@ -195,7 +195,7 @@ class _Reader:
         return [*found]
 
     def _piece(self, number: int, which: int, weights: list[float]) -> _Piece:
-        """Return a node's primitive, by its number in the mesh. weights: of its morph targets."""
+        """Return a node's primitive, by its index in the mesh. weights: those of morph targets."""
         primitive = self._document.meshes[self._document.nodes[number].mesh].primitives[which]
         attributes = vars(primitive.attributes)
         stored = self._file.values(attributes["POSITION"]).astype(np.float64)

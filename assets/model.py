@@ -150,8 +150,8 @@ class Wrinkles:
       length is the readiness to wrinkle, zero for none; shape (V, 2, 3), float32.
     - resting: wrinkles of each vertex at rest, such as those of age, 0 to 1, shape (V,); (1,) for
       all.
-    - folds: the fraction of `resting` that is anatomy, such as folds of lids, 0 to 1, shape (V,);
-      (1,) for all. It also shows in a face that is drawn without wrinkles.
+    - folds: the part of `resting` that is anatomy, such as folds of lids, 0 to 1, shape (V,); (1,)
+      for all. Folds also show in a face that is drawn without wrinkles.
     - lids: the fraction of skin that is shaded because lids are open, 0 to 1, shape (V,); (1,) for
       all.
     """

@@ -151,7 +151,7 @@ def _optional(number: int, count: int) -> int:
 class Placing:
     """Position and size of a picture in texture coordinates.
 
-    scale, offset: of coordinates along u and v, in this order. is_clamped: whether the picture's
+    scale, offset: for coordinates along u and v, in this order. is_clamped: whether the picture's
     edge continues beyond it; else the picture repeats.
     """
 

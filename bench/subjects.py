@@ -110,7 +110,7 @@ class Subject:
 
 
 def scanned(scans: Scans) -> Subject:
-    """A scan and its decimation; each coarse vertex moves like the scan at its place."""
+    """A scan and its decimation; each coarse vertex moves like the nearest point of the scan."""
     mesh = scans.mesh
     points, faces = decimated(mesh.vertices, mesh.faces, COARSE_TRIANGLES)
     place = closest_points(points, mesh.vertices, mesh.faces)

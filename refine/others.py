@@ -222,7 +222,8 @@ def _with_edge_points(values: Floats32, mesh: Connectivity) -> Floats32:
 def _children(corners: npt.NDArray[Any], edge_points: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Return four triangles for each triangle: three at its corners, and one between its midpoints.
 
-    `corners`: of any kind, shape (F, 3, ..); `edge_points`: of the edges. Shape (4 F, 3, ..).
+    `corners`: values at corners, shape (F, 3, ..); `edge_points`: values at edges, of this shape.
+    Returns shape (4 F, 3, ..).
     """
     points = np.concatenate([corners, edge_points], axis=1)
     return points[:, CHILD_TRIANGLES].reshape(-1, *corners.shape[1:])

@@ -37,7 +37,8 @@ class GpuBuffers:
 class GpuMesh:
     """Triangles of one frame, in buffers that the next frame overwrites.
 
-    Members are those of `refine.RefinedMesh`. Each is fetched once, which waits for the frame.
+    It has the members of `refine.RefinedMesh`. Each array is fetched once, when it is read first;
+    reading waits until the frame is complete.
     """
 
     def __init__(

@@ -36,7 +36,7 @@ class Tables(NamedTuple):
 
 
 def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
-    """Lay out a mesh. `values`: of corners, shape (A, k)."""
+    """Lay out the data of a mesh. `values`: texture coordinates and attributes, shape (A, k)."""
     arrays = {**_arrays(mesh, values), **rules.arrays()}
     sizes = _counts(mesh, values.shape[1], arrays, rules)
     views = {}

@@ -88,7 +88,7 @@ def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) 
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
-    """Set the plane that cuts the skin; width: of the cut, as a fraction of the scene's radius."""
+    """Set the plane that cuts the skin; width: width of the cut, in radii of the scene."""
     program["cut"] = in_view(cut, view)
     if "cut_width" in program:
         program["cut_width"] = width * view.camera.scene_radius

@@ -104,9 +104,9 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A rule: exactly one of these values; a function that returns them is called once.
+    """A rule for a value: it must be one of `values`, or of those that a function returns.
 
-    description: replaces a long list of values in an error.
+    description: words that replace a long list of values in an error.
     """
 
     allowed: Iterable[Any] | Callable[[], Iterable[Any]]

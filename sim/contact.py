@@ -32,7 +32,7 @@ EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
 
 
 class LipPairs(NamedTuple):
-    """Vertices of each lip, and the point of the other lip that each touches in a closed mouth."""
+    """Vertices of each lip, and for each the point of the other lip that it touches when closed."""
 
     vertex: Integers32  # (P,)
     beside: Integers32  # (P, 2) ends of an edge-like segment of the other lip
@@ -46,7 +46,7 @@ class LipPairs(NamedTuple):
     def apart(self, values: Floats64) -> Floats64:
         """Return for each pair the value at the vertex, minus the value at the point, (P, 3).
 
-        values: of all vertices, (V, 3).
+        values: a vector for each vertex, (V, 3).
         """
         a, b = self.beside.T
         weight = self.weight[:, None]

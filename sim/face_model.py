@@ -57,8 +57,8 @@ class FaceModel(Foundation):
     def grip(self, activation: Floats64, jaw: tuple[float, ...], closed: float) -> Grip:
         """Return how firmly the lips stick together; the jaw and some muscles part them.
 
-        activation: of each muscle, shape (M,); jaw: values open, forward, sideways; closed: how far
-        the lips are kept together over an open jaw, 0..1.
+        activation: one value for each muscle, shape (M,); jaw: values open, forward, sideways;
+        closed: how far the lips are kept together over an open jaw, 0..1.
         """
         if not len(self.skin.lips.vertex):
             return Grip(0.0, 0.0)

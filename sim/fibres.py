@@ -275,7 +275,7 @@ def move_lines(
 ) -> None:
     """Move all lines for one tick, each after the lines beneath it, and contract active lines.
 
-    activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
+    activation: one value for each muscle, (M,). mandible: its RigidMotion. Fills `motion`.
     """
     muscle = bundle.muscle
     contraction = bundle.contraction

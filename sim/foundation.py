@@ -39,7 +39,7 @@ Faces = npt.NDArray[np.int32]
 
 
 class Given(NamedTuple):
-    """The optional attributes of a head; None if the head has no such attribute."""
+    """The optional attributes of a head; an attribute that the head lacks is None."""
 
     landmarks: Any  # determine size, lips and lids; without them: a plain spring mesh
     rig: Any  # determines muscles, if there are landmarks

@@ -69,7 +69,7 @@ def place_lids(
 ) -> Lids:
     """Find the lids of each eye, and the weight of each vertex in their motion.
 
-    names: of all controls in their order, to find the lid muscles' activations.
+    names: names of all controls in their order, to find the lid muscles' activations.
     """
     evened_area = 10.0  # mm2
     even = surface.smoother(evened_area)

@@ -95,8 +95,8 @@ class MuscleForces:
     ) -> None:
         """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
 
-        activation: of each muscle, shape (M,); weight: the mandible's weight at each vertex, shape
-        (V,).
+        activation: one value for each muscle, shape (M,); weight: the mandible's weight at each
+        vertex, shape (V,).
         """
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         gather(state, activation, self.skin, mandible.rotation, weight)

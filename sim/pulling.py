@@ -67,9 +67,9 @@ class Pull:
     ) -> None:
         """Begin at the current state of a face; the face itself does not change.
 
-        vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates: controls
-        that may be used; a tuple holds controls that move together, such as both sides of a muscle.
-        sight: direction in which the finger is seen, shape (3,).
+        vertices, firmness: the skin under the finger, (n,), as for `Touch.drag`. candidates:
+        controls that may be used; a tuple holds controls that move together, such as both sides of
+        a muscle. sight: direction in which the finger is seen, shape (3,).
         """
         self._base = face.clone()
         self._probe = face.clone()

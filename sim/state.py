@@ -18,7 +18,7 @@ from .surface import SkinSurface
 
 
 class State(NamedTuple):
-    """Positions, velocities, targets of the springs, and work space; by vertex or edge."""
+    """Positions, velocities, targets of springs, and work space, for each vertex or edge."""
 
     x: Floats64  # (V, 3) positions
     v: Floats64  # (V, 3) velocities

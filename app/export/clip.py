@@ -156,9 +156,9 @@ def _surface_of(
 class FrameSurface:
     """One surface in one frame [mm], in the form of mesh files.
 
-    points, normals: of the vertices, shape (V, 3). faces: shape (F, 3). uv, face_uv: as in
-    `MovingSurface`, None without a texture. source: the triangle of the surface that contains each
-    triangle, shape (F,).
+    points, normals: positions and normals of vertices, shape (V, 3). faces: shape (F, 3). uv,
+    face_uv: as in `MovingSurface`, None without a texture. source: the triangle of the surface that
+    contains each triangle, shape (F,).
     """
 
     points: Floats64

@@ -144,7 +144,7 @@ EYES_MOST = 25.0  # [degrees] that eyes turn without strain
 
 
 class Idle:
-    """The idle life of a scene's face; it does nothing in a scene without a face."""
+    """The idle life of a scene's face; without a face it does nothing."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

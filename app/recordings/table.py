@@ -340,7 +340,7 @@ def _rows_in(
 def one_face(table: Table, request: TakeRequest) -> Table:
     """Return the rows of the requested face, or of the face in most rows.
 
-    Faces have the names of the file. Raises UserError for a missing face.
+    Faces are named as in the file. Raises UserError for a missing face.
     """
     places = table.places
     column = next((places[name] for name in FACE_COLUMNS if name in places), None)

@@ -1,4 +1,4 @@
-"""Plug-ins of a refinement: which one has raised an error.
+"""Plug-ins of a refinement: find the plug-in that raised an error.
 
 A criterion, a scheme or a refiner may come from another package, or from a program that registers
 it. An error in its code is reported in one line, with the name of the plug-in.

@@ -92,7 +92,7 @@ class Refinement:
         return name, {**preset.options_for(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
-        """Whether the criterion is or contains PAPERS_CRITERION, which uses THRESHOLDS."""
+        """Whether one of the criteria is PAPERS_CRITERION, which uses THRESHOLDS."""
         return PAPERS_CRITERION in self.criterion_on(scene).split("+")
 
     def check(self, scene: str) -> None:

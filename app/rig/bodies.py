@@ -1,4 +1,4 @@
-"""Bodies, the meshes of an avatar; a pose gives their vertices."""
+"""Bodies: the meshes of an avatar, with vertices for any pose."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class Tongue(BentPart):
     shape: Floats64 | None = None  # array of the last `follow`
 
     def follow(self, now: FaceNow) -> None:
-        """Set another shape and its colours; do nothing for the same array."""
+        """Set another shape and its colours; do nothing if the array is the same."""
         if now.tongue is None or now.tongue is self.shape:
             return
         self.shape = now.tongue
@@ -69,7 +69,7 @@ class MouthWalls(BentPart):
     jaw: tuple[float, ...] = ()  # values of the jaw at the last `follow`
 
     def follow(self, now: FaceNow) -> None:
-        """Follow the mandible; do nothing for the same values of the jaw."""
+        """Follow the mandible; do nothing if the values of the jaw have not changed."""
         if now.jaw == self.jaw:
             return
         self.jaw = now.jaw

@@ -68,7 +68,7 @@ def hermite(fraction: Value, start: Value, end: Value) -> Value:
 
 
 def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
-    """Return the fractions of each change, (N,), at fractions of its time, (N,).
+    """Return how far changes have advanced, (N,), at fractions of their times, (N,); both 0 to 1.
 
     rows: easings, (N, 3).
     """

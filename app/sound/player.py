@@ -88,7 +88,7 @@ class Player:
 
     @property
     def is_heard(self) -> bool:
-        """Whether a part plays and has not ended."""
+        """Whether the device plays a part that has not ended."""
         part = self._part
         return part is not None and self.position < part.end and not self.is_stuck
 

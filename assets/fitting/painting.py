@@ -172,8 +172,8 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
 def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
     """Draw the triangles of a layout over a texture (H, W, 3), uint8.
 
-    colours: colour of each corner, 0 to 255, (F, 3, 3); or another texture, and the layout of the
-    triangles in it.
+    colours: colour of each corner, 0 to 255, (F, 3, 3); or a pair of another texture and the layout
+    of the triangles in this texture.
     """
     texels = texels_within(layout, picture.shape[:2])
     if isinstance(colours, tuple):

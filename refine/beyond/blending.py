@@ -87,7 +87,7 @@ FOUR_NINTHS = np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
-    """Cut a triangle into a fan around its middle; with a single split, as the paper does."""
+    """Cut a triangle into a fan around its centre; a single split is cut as in the paper."""
     if sum(splits) <= 1:
         return subdivide(splits)
     points = outline(splits)

@@ -119,7 +119,7 @@ def turn_normals(
     """Write the normals of vertices, and of points on split edges by their geomorph weights.
 
     The loop runs over vertices, and then over split edges. `points`: ends and opposite corners of
-    edges, shape (E, 4); `normals`: of vertices and points of edges, shape (V + E, 3).
+    edges, shape (E, 4); `normals`: normals of vertices and of points on edges, shape (V + E, 3).
     """
     vertices = frame.rows
     vertex_count = frame.points.shape[0]

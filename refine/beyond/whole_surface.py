@@ -153,8 +153,8 @@ def cross_corners(
     """Write the centres of triangles with three split edges, shape (F, 3).
 
     Also write the summand of each triangle in the normals at its corners, shape (3 F, 3); it is
-    zero for a triangle that names a vertex twice. `rows`: of vertices and of all
-    edges, shape (V + E, 6); `edge_points`: of all edges, (E, 6).
+    zero for a triangle that names a vertex twice. `rows`: rows of vertices and
+    of edge points, shape (V + E, 6); `edge_points`: rows of edge points, (E, 6).
     """
     assert (
         faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
@@ -222,7 +222,8 @@ def across_edge(
 
     mean: mean of the normals at its ends; along: vector from end to end; edge_point: its split
     point.
-    `edge_sides`, `is_interior`: of edges; `centres`: of triangles, shape (F, 3).
+    `edge_sides`, `is_interior`: fields of `Connectivity`; `centres`: a point in each triangle,
+    shape (F, 3).
     """
     side = edge_sides[e, 0] >> SIDE_BITS
     beyond = edge_sides[e, 1] >> SIDE_BITS

@@ -70,7 +70,7 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
 def fans_of_sectors(
     mesh: Connectivity, rest: Floats64, corner_sector: Integers64, used: Integers64
 ) -> SectorFans:
-    """Return the fans of the sectors `used`; `corner_sector`: of each corner, shape (F, 3)."""
+    """Return the fans of the sectors `used`; `corner_sector`: sector of each corner, (F, 3)."""
     around = np.flatnonzero(np.isin(corner_sector, used))  # corners, 3 x triangle + i
     number = np.searchsorted(used, corner_sector.ravel()[around])
     order = np.argsort(number, kind="stable")
@@ -91,7 +91,7 @@ def _contributions(
 ) -> Floats64:
     """Return `SectorFans.contributions`.
 
-    `sector`: of each corner, (K,). `weights`: of cross products, (K,).
+    `sector`: sector of each corner, (K,). `weights`: weights of cross products, (K,).
     """
     first = rest[fans[:, 1]] - rest[fans[:, 0]]
     second = rest[fans[:, 2]] - rest[fans[:, 0]]

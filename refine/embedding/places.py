@@ -154,7 +154,7 @@ def linearise(
     place: Floats64,
     columns: Floats64,
 ) -> tuple[float, Vector]:
-    """Distance of a point from a place on patch t, and the part of the way there across the normal.
+    """Return the distance of a point from a place on patch t, and its part across the normal.
 
     `columns`: decrease of this part with each barycentric coordinate, rows of (3, 3), written.
     """

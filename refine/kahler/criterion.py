@@ -111,7 +111,7 @@ class Criterion:
         raise NotImplementedError(f"{type(self).__name__} must have a method measure")
 
     def complaint(self, metric: Floats32) -> str:
-        """Return a message on edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
+        """Return a message on edges whose metric is NaN; `metric`: one value per edge, (E,)."""
         bad = np.flatnonzero(np.isnan(metric))
         return (
             f"the criterion {type(self).__name__} measures NaN for {len(bad)} of {len(metric)} "

@@ -142,8 +142,10 @@ def look_up_triangles(
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
-    `splits`, `first_points`: arrays of `FrameBuffers`; `first_centre`: the row of the first point
-    in the middle of a triangle; the two arrays of `Patterns`; `triangles`, `source`: of a stream.
+    `splits`, `first_points`: arrays of `FrameBuffers`. `subtriangle_counts`, `subtriangles`: arrays
+    of `Patterns`. `first_centre`: the row of the first centre of a triangle. `triangles`, `source`:
+    arrays of a stream, written.
+
     An attribute edge keeps its points in the direction of the edge; a triangle that runs against it
     reads the quarter points in reverse. Centres are numbered in the order of the triangles that
     have one.

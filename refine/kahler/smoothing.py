@@ -171,7 +171,7 @@ def geomorph_vertices(
 ) -> None:
     """Write the geomorph weight of each vertex, (V,): the largest of its split edges, or 0.
 
-    `ends`: the first two columns hold the vertices of each edge, (E, 4). `edges`: numbers of the
+    `ends`: the first two columns hold the vertices of each edge, (E, 4). `edges`: indices of the
     split edges, (N,). `geomorph`: the weight of each edge, (E,). Weights are written to
     `vertex_geomorph`.
     """
@@ -189,7 +189,7 @@ def place_vertices(
 ) -> None:
     """Write the original vertices; the vertex rule moves vertices at split edges (Fig. 3).
 
-    `geomorph`: of each vertex, shape (V,).
+    `geomorph`: weight of each vertex, shape (V,).
     """
     points = frame.points
     normals = frame.normals

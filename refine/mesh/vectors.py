@@ -76,7 +76,7 @@ def unit(v: Vector) -> Vector:
 
 @njit
 def is_held(squared: Any) -> Any:
-    """Return whether single precision can represent the square of a length; has no branch."""
+    """Return whether single precision can represent the square of a length, without a branch."""
     return (SHORT_SQUARE < squared) & (squared < LONG_SQUARE)
 
 

@@ -24,7 +24,7 @@ class TextureGradients:
     def measure(self, positions: Floats64) -> Floats32:
         """Gradient of u, then of v [1/unit of positions], shape (U, 6); 0 at flat triangles.
 
-        positions: of the vertices, shape (V, 3).
+        positions: positions of the vertices, shape (V, 3).
         """
         self._sums[:] = 0.0
         _add_gradients(positions, self._faces, self._face_uv, self._corners, self._sums)

@@ -16,7 +16,7 @@ PARALLEL = 1e-12  # below this a triangle counts as parallel to the line
 
 
 def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
-    """For each line `origin + t direction` and its triangle: volume, weights u and v, and t.
+    """Intersect each line `origin + t direction` with its triangle: volume, weights u and v, and t.
 
     origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times the volume of the
     tetrahedron of direction and triangle, above 0 if the line comes from outside; if its size is

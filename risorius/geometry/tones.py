@@ -76,7 +76,7 @@ def compose(
 ) -> None:
     """Write rows of a picture (H, W, 3), from row `first` on.
 
-    left: fraction of light that skin reflects, (3, rows, W). light: of skin without pigments,
+    left: fraction of light that skin reflects, (3, rows, W). light: light of skin without pigments,
     linear, (3, H, W). skin: light of bare skin, which replaces removed hair, (3,); former: fraction
     of each texel that the removed hair covered, (H, W). table: the byte for each step of the square
     root of light.

@@ -91,7 +91,7 @@ class ScenePanel:
 
 
 def light_in_words(name: str) -> str:
-    """Return a light's name as the list shows it: of a map, the name of its file."""
+    """Return a light's name as the list shows it; for a map, the name of its file."""
     if name == OTHER_MAP or name in render.LIGHTS:
         return readable(name)
     return as_text(Path(name).name).replace("##", "# #")  # imgui hides the part after ##

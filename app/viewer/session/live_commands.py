@@ -87,7 +87,7 @@ class LiveCommands:
     # State for the window
 
     def advance(self, seconds: float) -> Message:
-        """Read new packets, and override the session's controls by their face."""
+        """Read new packets, and override the session's controls by the received face."""
         face = self.face
         if face is None:
             self.has_changed = False
