@@ -86,7 +86,7 @@ class GltfPainter:
         if attributes.get("COLOR_0") is None:
             return None
         light = self._file.values(attributes["COLOR_0"])[:, :3]
-        if light.dtype.kind != "f":  # integers are always fractions, whatever the file says
+        if light.dtype.kind != "f":  # integers are always fractions, even if the file denies it
             light = fractions(light)
         screen = np.rint(255.0 * to_screen(np.nan_to_num(light) * factor))
         return screen.astype(np.uint8)

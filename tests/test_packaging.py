@@ -68,7 +68,7 @@ def test_every_data_file_is_listed():
 
 
 def test_what_an_editor_leaves_is_not_listed(tmp_path):
-    """Editors' locks, copies and partial files are left out, whatever their suffixes."""
+    """Editors' locks, copies and partial files are left out, with any suffix."""
     for package, patterns in SETUPTOOLS["package-data"].items():
         for pattern in patterns:
             folder = (tmp_path / package / pattern).parent

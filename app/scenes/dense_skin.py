@@ -83,7 +83,7 @@ def _embedded(
 ) -> Embedding:
     """Bind vertices (V, 3) to the nearest simulated triangles that are not on the other lip.
 
-    Lips that were sealed face the same way, so their normals do not tell them apart.
+    Lips that were sealed face the same way, so their normals do not distinguish them.
     """
     from risorius.refine import Embedding  # few heads need it
 

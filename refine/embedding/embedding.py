@@ -83,10 +83,9 @@ class Embedding:
         them; else they only turn. `groups`, integers of shape (N,): fine vertices with the same
         number are bound to the point of the first of them, so a hair keeps its shape. `places`:
         triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace the search:
-        one for each group, numbered from 0 on, or one for each fine vertex.
-
-        Raises ValueError for arrays that do not fit together, points that are not finite,
-        and labels or places without a triangle that has an area.
+        one for each group, numbered from 0 on, or one for each fine vertex. Raises ValueError for
+        arrays that do not fit together, points that are not finite, and labels or places without a
+        triangle that has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)

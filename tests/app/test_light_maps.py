@@ -74,7 +74,7 @@ def test_radiance_is_read(tmp_path, is_packed):
 
 
 def test_openexr_is_read(tmp_path):
-    """Channels R, G and B are read, whatever other channels there are."""
+    """Channels R, G and B are read, and all other channels are ignored."""
     path = tmp_path / "sky.exr"
     _write_openexr(path, (32, 64))
     assert_allclose(read_light_map(path).radiance[::4, ::4], pixels(), rtol=1e-3)

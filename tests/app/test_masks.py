@@ -1,4 +1,4 @@
-"""Masks of persons: what they hide, and that no face pierces them."""
+"""Masks of persons: they hide mouth and nose, and no face pierces them."""
 
 from pathlib import Path
 

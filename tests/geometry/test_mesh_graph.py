@@ -43,7 +43,7 @@ def test_a_path_has_its_start_and_end():
 
 
 def test_pieces_are_joined_by_corners_or_links():
-    """Triangles and pairs join what they name; what nothing names is a piece of its own."""
+    """Triangles and pairs join the points that they name; any other point is a separate piece."""
     assert pieces_of(FACES, 10).tolist() == [0] * 6 + [1] * 3 + [2]
     assert pieces_of(np.array([[2, 0], [3, 1]]), 5).tolist() == [0, 1, 0, 1, 2]
     assert pieces_of(np.zeros((0, 2), np.int64), 2).tolist() == [0, 1]

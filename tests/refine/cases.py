@@ -59,7 +59,7 @@ class GivenMetric(refine.Criterion):
 
 
 class Forced(refine.Criterion):
-    """A criterion that splits given edges, whatever the positions are."""
+    """A criterion that splits given edges, for any positions."""
 
     def __init__(self, splits: npt.ArrayLike) -> None:
         self.wanted = np.asarray(splits, dtype=np.uint8)

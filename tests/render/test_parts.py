@@ -35,7 +35,7 @@ def test_parts_move_with_their_bones(renderer):
 
 
 def test_a_part_that_changes_its_shape_is_drawn_anew(renderer):
-    """New arrays of the same part are uploaded, whatever was drawn in between."""
+    """New arrays of the same part are uploaded, even after other parts were drawn."""
     pixels = []
     ball = Ball()
     part = reshaped(ball)

@@ -82,7 +82,7 @@ def test_two_surfaces_do_not_mix(surface):
 
 
 def test_begin_resets_the_state_of_opengl(surface):
-    """Every frame sets depth test, culling, blending, scissor and masks, whatever a panel set."""
+    """Every frame resets depth test, culling, blending, scissor and masks that a panel has set."""
     expected = draw_image(surface, sphere())
     gl = surface.gl
     gl.disable(gl.DEPTH_TEST)
