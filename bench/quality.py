@@ -92,7 +92,7 @@ class Everywhere(refine.Criterion):
         self._splits = splits
 
     def measure(self, positions: object, normals: object, metric: Floats32) -> None:
-        """Write the number of splits as the metric of every edge, at which blending is complete."""
+        """Write the metric of every edge: its number of splits, so that blending is complete."""
         metric[:] = self._splits
 
 

@@ -62,7 +62,7 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
 def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], Any]]:
     """Open MediaPipe's face landmarker: a function from a picture (H, W, 3) to its result.
 
-    Raises UserError if the file is no such model, or if MediaPipe is missing.
+    Raises UserError if the file is not a model of this kind, or if MediaPipe is missing.
     """
     with silent():
         mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")

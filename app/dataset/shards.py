@@ -51,7 +51,7 @@ class Shard:
 
 
 def files_in(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Yield each readable file in a tar file: its name outside of the shard, and its content."""
+    """Yield each readable file in a tar file: its name as an unpacked file, and its content."""
     with contextlib.suppress(OSError, tarfile.TarError), path.open("rb") as file:
         yield from _files_in(file)
 

@@ -234,7 +234,7 @@ class Script:
         return tuple((self.names.index(name), track) for name, track in self.tracks.items())
 
     def posed(self, time: float) -> dict[str, float]:
-        """Return the values of the poses alone at `time` [s], by name."""
+        """Return the values of the poses, without tracks, at `time` [s], by name."""
         return dict(zip(self.posed_names, self._posed(time).tolist(), strict=True))
 
     def _posed(self, time: float) -> Floats64:
@@ -250,7 +250,7 @@ class Script:
         return posed
 
     def posed_channel(self, name: str) -> Channel:
-        """Return the motion of a control by the poses alone, as a channel."""
+        """Return the motion of a control by the poses, without tracks, as a channel."""
         keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
         return Channel.of(keys)
 

@@ -77,7 +77,7 @@ class Recovery:
         return self._due - self._clock()
 
     def save(self) -> None:
-        """Write unsaved work; raises UserError, once, if the file cannot be written."""
+        """Write unsaved work; if the file cannot be written, the first call raises UserError."""
         state = _state(self._session)
         if self._path is None or state == self._safe or not self._session.work.unsaved:
             return

@@ -118,7 +118,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
 
 
 def edit_menu(session: Session) -> Menu:
-    """Return commands for undo, and for whole faces."""
+    """Return commands that undo changes, or that change the whole face."""
     command = partial(Command, "Edit")
     redo = partial(command, can_run=lambda: session.history.can_redo)
     of_sides = partial(command, can_run=lambda: session.scene.face is not None)

@@ -58,7 +58,7 @@ class Schedule:
 
     @property
     def is_awake(self) -> bool:
-        """Whether frames are drawn because of an event."""
+        """Whether a recent event requires more frames."""
         return self._awake > 0
 
     @property
