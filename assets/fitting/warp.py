@@ -18,6 +18,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius.geometry.closest import SurfacePoints, closest_points
+from risorius.geometry.distance_sums import subtract_distances
 from risorius.geometry.read_only import make_read_only
 
 from ...geometry.arrays import Floats64, Integers32
@@ -99,17 +100,19 @@ class ThinPlateSpline:
         system[count:, :count] = rows[:, count:].T
         wanted = np.zeros((width, 3))
         wanted[:count] = target[first]
-        *_, self._weights, failed = scipy.linalg.lapack.dgesv(system, wanted)
+        *_, weights, failed = scipy.linalg.lapack.dgesv(system, wanted)
         if failed:
             raise np.linalg.LinAlgError("the points lie in a plane")
+        self._points = tuple(self._source.T.copy())
+        self._pulls = tuple(weights[:count].T.copy())
+        self._affine = weights[count:]
 
     def points(self, points: npt.ArrayLike) -> Floats64:
         """Deform points (n, 3)."""
-        places = np.asarray(points, dtype=np.float64)
-        at_once = 128  # points whose rows fit into the processor's cache
-        parts = range(0, len(places), at_once)
-        moved = [self._rows(places[k : k + at_once]) @ self._weights for k in parts]
-        return np.concatenate([np.empty((0, 3)), *moved])
+        places = np.array(points, dtype=np.float64, order="C")
+        moved: Floats64 = self._affine[0] + (places - self._middle) / self._half @ self._affine[1:]
+        subtract_distances(places, self._points, self._pulls, moved)
+        return moved
 
     def _rows(self, places: Floats64) -> Floats64:
         """Evaluate the basis functions at points (n, 3); shape (n, number of given points + 4)."""

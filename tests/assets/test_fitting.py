@@ -354,7 +354,7 @@ def test_landmarks_on_two_pieces_are_named(other):
 def test_the_warp_is_the_interpolant_of_scipy(generator):
     """The warp equals scipy's interpolant, exactly through points and with a tolerance.
 
-    It is evaluated at points in several blocks, and at none.
+    It is evaluated at many points, and at none.
     """
     source = generator.normal(0.0, 50.0, (60, 3))
     target = source + generator.normal(0.0, 4.0, (60, 3))
