@@ -26,7 +26,6 @@ from risorius.assets.identities import (
 )
 
 from ..control_names.angles import GAZE
-from ..motion import SETTLING
 from ..motion.life import looking_at
 from ..passes.camera import CameraLabels
 from ..passes.labels import Labelled
@@ -42,6 +41,8 @@ from .request import SetRequest
 from .sampling import Sample, SampleCamera, chosen, draw
 from .surroundings import laid_over, light_of
 from .table import BARE
+
+SETTLING = 0.5  # [s] after which skin is within 0.001 mm of its place in a pose; films take longer
 
 
 @dataclass(frozen=True)

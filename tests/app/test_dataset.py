@@ -18,7 +18,8 @@ from risorius import render
 from risorius.app.dataset.folder import UNFINISHED, SetFolder
 from risorius.app.dataset.labels import action_units, labels_of_face
 from risorius.app.dataset.request import request_of
-from risorius.app.dataset.studio import Studio
+from risorius.app.dataset.sampling import draw
+from risorius.app.dataset.studio import Studio, _posed
 from risorius.app.dataset.table import load_table
 from risorius.assets import Segment
 
@@ -307,6 +308,15 @@ def test_apertures_grow_with_the_opening(face):
     assert turned["mouth"] == approx(parted[-1], abs=0.1)
     assert turned["eye_left"] == approx(0.5 * turned["eye_right"], abs=0.5)
     assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
+
+
+@pytest.mark.parametrize("index", [0, 2, 10])
+def test_a_face_is_photographed_at_rest(face, index):
+    """A second later, no vertex of a posed face has moved by more than 0.002 mm."""
+    _posed(face, draw(load_table(None), 3, index), SIZE)
+    pictured = face.positions.copy()
+    face.step(1.0)
+    assert np.abs(face.positions - pictured).max() < 0.002
 
 
 def test_speech_is_reported_in_units(face):
