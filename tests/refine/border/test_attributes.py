@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import refine
+from risorius.refine.border.corner_values import _different_rows
 from tests import meshes
 from tests.refine.cases import GivenMetric, edge_count_of, kahler, places_in_source, scheme_of
 
@@ -109,3 +110,13 @@ def test_values_of_corners_where_there_is_no_triangle(name):
     mesh = refiner.refine(np.eye(3))
     assert mesh.uv is not None
     np.testing.assert_array_equal(mesh.uv, np.zeros((3, 2)))
+
+
+def test_different_rows_are_those_of_numpy(generator):
+    """Rows of corners are numbered as `np.unique` numbers them, for one to four attributes."""
+    for columns, count in itertools.product((1, 2, 4), (1, 50, 2000)):
+        rows = generator.integers(0, 1 + count // 3, (count, columns))
+        different, number = np.unique(rows, axis=0, return_inverse=True)
+        found = _different_rows(rows)
+        assert (found[0] == different).all()
+        assert (found[1] == number.reshape(-1)).all()
