@@ -108,7 +108,8 @@ class PlacedPart:
 class SkinMaps:
     """The textures of a skin.
 
-    - texture: albedo of the front side, and fine shape. An untextured style hides the albedo.
+    - texture: albedo of the front side, and fine shape, which needs the columns of gradients. An
+      untextured style hides the albedo.
     - bumps: furrows, which only per-pixel shading shows. Their strength is a product of the style's
       `bumps` and of amounts per vertex.
     """
@@ -163,7 +164,7 @@ class Skin:
         if self.maps.bumps is not None and style.shows_bumps and self.stream.has_bumps:
             shown[self.maps.bumps] = style.bumps
         fine = None if self.maps.texture is None else self.maps.texture.fine_shape
-        if fine is not None and style.shows_fine_shape:
+        if fine is not None and style.shows_fine_shape and self.stream.has_gradients:
             shown[fine] = 1.0
         return shown
 

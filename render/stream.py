@@ -140,9 +140,14 @@ class MeshBuffers:
         """Number of triangles of the last mesh."""
         return self.mesh.triangle_count
 
+    @property
+    def has_gradients(self) -> bool:
+        """Whether vertices have the gradients of u and of v."""
+        return self.columns >= 16
+
     def _check_bumps(self, has_bumps: bool) -> None:
         """Raise ValueError if bumps shall show, but the stream has no columns for them."""
-        if has_bumps and self.columns < BUMPS.stop:
+        if has_bumps and not self.has_gradients:
             raise ValueError(
                 f"bumps on a stream of {self.columns} columns; they need the columns 9 to 16: "
                 "lend a stream of 16 columns, or upload without bumps"

@@ -60,7 +60,8 @@ class Texture(_Mipmaps):
         - image: albedo, sRGB, top row first, (H, W, 3), uint8. Texture coordinate v is 1 at the
           top.
         - occlusion: ambient occlusion, 255 where all ambient light arrives, (H, W), uint8.
-        - fine_shape: a map of two channels, which only per-pixel shading shows.
+        - fine_shape: a map of two channels. Only per-pixel shading shows it, on streams of at least
+          16 columns.
 
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """

@@ -53,9 +53,10 @@ class DrawnMesh:
         view = refine.View(camera.eye)
         self.positions = positions
         more = {}
+        self.wrinkles = False
         if self.can_wrinkle and wrinkling is not None:
             more["values"] = {WRINKLES: wrinkling.amounts, GRADIENTS: wrinkling.gradients}
-        self.wrinkles = bool(more)
+            self.wrinkles = bool(wrinkling.amounts.any())
         refiner: Any = self.refiner  # a refiner without attributes may lack `values`
         with reported(self.plug_ins):
             if isinstance(self.stream, render.GpuStream):

@@ -26,7 +26,7 @@ Points = npt.NDArray[np.float64]
 
 
 class Wrinkling(NamedTuple):
-    """Wrinkles of the skin in one frame: amounts, and directions of furrows.
+    """Wrinkles of the skin in one frame: amounts, and directions of furrows and of fine shape.
 
     amounts: depth of furrows in both slots of each vertex, 0 to 1, shape (V, 2); below 0, to -1,
         where skin of a lid is stretched, and its shade is gone.
@@ -52,17 +52,19 @@ class Compression:
         self._folds = wrinkles.folds[:, None] * whole
         self._lids = wrinkles.lids[:, None] * whole
         self._has_folds = bool(self._folds.any())
+        self._has_fine_shape = scene.skin.fine_shape is not None
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def measure(self, positions: Points, strength: float = 1.0) -> Wrinkling | None:
-        """Return the wrinkles of the skin at these positions, (V, 3); None if there are none.
+        """Return the wrinkles of the skin at these positions, (V, 3).
 
+        The result is None if there are no wrinkles, and no fine shape, which needs the gradients.
         strength: as in `amounts`.
         """
-        if strength == 0.0 and not self._has_folds:
-            return None
-        amounts = self.amounts(positions, strength)
-        if not amounts.any():
+        amounts = np.zeros((len(positions), 2), np.float32)
+        if strength != 0.0 or self._has_folds:
+            amounts = self.amounts(positions, strength)
+        if not self._has_fine_shape and not amounts.any():
             return None
         return Wrinkling(amounts, self._gradients.measure(positions))
 

@@ -12,6 +12,7 @@ from risorius import assets, render
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.colour import to_linear
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.gradients import TextureGradients
 from risorius.geometry.texels import Texels, rates
 
 from ..scenes import Scene
@@ -127,25 +128,24 @@ def _normal_map(
 ) -> npt.NDArray[np.uint8]:
     """Make a normal map (H, W, 3) of fine shape and resting wrinkles.
 
-    Its axes run along u, across u, and outward.
+    Its axes run along u, across u, and outward. As in pictures, gradients of texture coordinates
+    are interpolated between vertices.
     """
     assert surface.uv is not None and surface.face_uv is not None
     uv = surface.uv[surface.face_uv]
     texels = Texels.within(uv.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
-    # Slopes per unit of u and of v become slopes per millimetre along u and across u.
-    along, aside = rates(uv, surface.rest[surface.faces]).swapaxes(0, 1)
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
-    shear = (along * aside).sum(axis=1) / length
-    height = np.maximum(np.linalg.norm(np.cross(along, aside), axis=1) / length, 1e-9)
-    steps = fine.slopes[texels.rows, texels.columns] - 128.0
-    slope_u, slope_v = steps.T * (fine.steepest / 127.0)
+    slopes = (fine.slopes[texels.rows, texels.columns] - 128.0) * (fine.steepest / 127.0)
     if wrinkles is not None and len(wrinkles.across) == len(surface.rest):
-        more_u, more_v = _resting_slopes(surface, wrinkles, texels, len(fine.slopes)).T
-        slope_u += more_u
-        slope_v += more_v
-    slope_u /= length[texels.faces]
-    slope_v = (slope_v - shear[texels.faces] * slope_u) / height[texels.faces]
-    normals = np.column_stack([-slope_u, -slope_v, np.ones_like(slope_u)])
+        slopes += _resting_slopes(surface, wrinkles, texels, len(fine.slopes))
+    gradients = TextureGradients(surface.faces, surface.uv, surface.face_uv).measure(surface.rest)
+    of_corners = gradients[surface.face_uv].reshape(-1, 3, 2, 3)
+    rises = np.einsum("nk,nkj->nj", slopes, texels.interpolate(of_corners))  # per millimetre
+    along, aside = rates(uv, surface.rest[surface.faces]).swapaxes(0, 1)
+    right = unit_vectors(along)
+    across = unit_vectors(np.cross(np.cross(along, aside), along))
+    normals = np.ones((len(rises), 3))
+    for axis, direction in enumerate((right, across)):
+        normals[:, axis] = -(rises * direction[texels.faces]).sum(axis=1)
     normals = unit_vectors(normals)
     image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
     image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)

@@ -3,6 +3,10 @@
 #define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; \
     vec3 u_gradient; vec3 v_gradient; float dense;
 
+#if defined(BUMPS) || defined(FINE)
+#define RELIEF
+#endif
+
 #if defined(VERTEX_STAGE)
 
 in vec3 in_position;
@@ -10,6 +14,8 @@ in vec3 in_normal;
 in vec2 in_uv;      // for the skin only
 #if defined(BUMPS)
 in vec2 in_bumps;
+#endif
+#if defined(RELIEF)
 in vec3 in_u_gradient;
 in vec3 in_v_gradient;
 #endif
@@ -27,6 +33,8 @@ void main() {
     surface.position = position.xyz;
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
+#endif
+#if defined(RELIEF)
     surface.u_gradient = mat3(model_view) * in_u_gradient;
     surface.v_gradient = mat3(model_view) * in_v_gradient;
 #endif
@@ -36,8 +44,7 @@ void main() {
 
 #elif defined(FRAGMENT_STAGE)
 
-#if defined(BUMPS) || defined(FINE)
-#define RELIEF
+#if defined(RELIEF)
 #include "bumps.glsl"
 #endif
 in Surface { SURFACE } surface;
@@ -55,7 +62,7 @@ void main() {
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
 #if defined(RELIEF)
     Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
-    normal = bumped(normal, surface.position, surface.uv, bump, GRADIENTS);
+    normal = bumped(normal, bump.slope, mat2x3(surface.u_gradient, surface.v_gradient));
 #endif
     normal.yz = -normal.yz;
     normal_and_depth = vec4(normal, surface.depth);

@@ -53,9 +53,14 @@ uniform float sharpness;
 #define TEXTURE_VARYING
 #endif
 #if defined(BUMPS)
-#define BUMP_VARYING vec2 bump_amounts; vec3 u_gradient; vec3 v_gradient;
+#define BUMP_VARYING vec2 bump_amounts;
 #else
 #define BUMP_VARYING
+#endif
+#if defined(RELIEF)
+#define RELIEF_VARYING vec3 u_gradient; vec3 v_gradient;
+#else
+#define RELIEF_VARYING
 #endif
 #if defined(SHADOWS) && !defined(COLOURED)
 #define LIFTED  // for skin only: parts have so small triangles that normals fit them
@@ -86,7 +91,7 @@ uniform float sharpness;
 #define FADE_VARYING
 #endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING OPENING_VARYING FADE_VARYING
+    SHADOW_VARYING BUMP_VARYING RELIEF_VARYING STRAND_VARYING FIBRE_VARYING OPENING_VARYING FADE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -100,6 +105,8 @@ in vec2 in_uv;
 #endif
 #if defined(BUMPS)
 in vec2 in_bumps;
+#endif
+#if defined(RELIEF)
 in vec3 in_u_gradient;  // gradients of texture coordinates along the surface [1/mm]
 in vec3 in_v_gradient;
 #endif
@@ -172,6 +179,8 @@ void main() {
 #endif
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
+#endif
+#if defined(RELIEF)
     surface.u_gradient = mat3(model_view) * in_u_gradient;
     surface.v_gradient = mat3(model_view) * in_v_gradient;
 #endif
@@ -236,6 +245,8 @@ void main() {
 #endif
 #if defined(BUMPS)
         drawn.bump_amounts = corner[i].bump_amounts;
+#endif
+#if defined(RELIEF)
         drawn.u_gradient = corner[i].u_gradient;
         drawn.v_gradient = corner[i].v_gradient;
 #endif
@@ -408,7 +419,7 @@ void main() {
     vec3 normal = shading_normal();
 #if defined(RELIEF)
     Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
-    normal = bumped(normal, surface.position, surface.uv, bump, GRADIENTS);
+    normal = bumped(normal, bump.slope, mat2x3(surface.u_gradient, surface.v_gradient));
 #endif
 #if defined(FIBRES)
     Strand strand = strand_at(surface.fibre);

@@ -24,6 +24,7 @@ from risorius.app.rig.surface import MovingSurface
 from risorius.app.script.script_file import parse_script
 from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
+from risorius.geometry.gradients import TextureGradients
 from risorius.geometry.normals import vertex_normals
 
 from .command_line import positions_in_blender
@@ -211,7 +212,8 @@ def test_the_texture_is_the_right_way_up(clip, glb):
 def test_fine_shape_is_a_normal_map(clip, glb):
     """The normal map has the slopes of the scene's fine shape, in each triangle's texture frame.
 
-    trimesh finds this map and the occlusion map.
+    Gradients of texture coordinates are means around vertices. trimesh finds this map and the
+    occlusion map.
     """
     skin = clip.skin
     fine = clip.scene.skin.fine_shape
@@ -223,11 +225,13 @@ def test_fine_shape_is_a_normal_map(clip, glb):
     assert np.asarray(material.occlusionTexture).min() < 100
     size = np.array(image.shape[1::-1])
     checked = 0
+    gradients = TextureGradients(skin.faces, skin.uv, skin.face_uv).measure(skin.rest)
     for face in range(0, len(skin.faces), 7):
         uv = skin.uv[skin.face_uv[face]].astype(float)
         points = skin.rest[skin.faces[face]]
         across, up = uv.mean(axis=0)
         column, row = (size * [across, 1.0 - up]).astype(int)
+        middle = np.array([column + 0.5, size[1] - row - 0.5]) / size
         slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
         uv_steps = np.diff(uv, axis=0)
         if abs(np.linalg.det(uv_steps)) < 4.0 / size.prod():
@@ -235,7 +239,9 @@ def test_fine_shape_is_a_normal_map(clip, glb):
         along, aside = np.linalg.solve(uv_steps, np.diff(points, axis=0))
         outward = np.cross(along, aside)
         normal = outward / norm(outward)
-        gradient = np.linalg.solve(np.stack([along, aside, normal]), [*slope, 0.0])
+        weights = np.linalg.solve(np.vstack([uv.T, np.ones(3)]), [*middle, 1.0])
+        gradient = slope @ (weights @ gradients[skin.face_uv[face]]).reshape(2, 3)
+        gradient -= gradient @ normal * normal
         right = along / norm(along)
         tilted = np.stack([right, np.cross(normal, right), normal]) @ (normal - gradient)
         expected = 127.5 + 127.5 * tilted / norm(tilted)

@@ -10,7 +10,7 @@ import pytest
 from risorius import render
 from risorius.render.texture import _first_halved, _halved, _lit_texels, _roots, _values
 
-from .scenes import PLAIN, Shape, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN, Shape, at, draw, draw_image, lent, sphere, square
 
 
 def textured(
@@ -22,12 +22,21 @@ def textured(
     values=None,
     occlusion=None,
     fine_shape=None,
+    corner=None,
 ):
-    """The picture of a square (or another shape) with the image spanning x and y from -50 to 50."""
+    """The picture of a square (or another shape) with the image spanning x and y from -50 to 50.
+
+    corner: the texture coordinates of the lower right vertex, if it lies elsewhere.
+    """
     shape = shape or square()
     renderer = render.Renderer(surface)
-    stream = lent(renderer, shape, columns=8)
-    stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
+    stream = lent(renderer, shape, columns=16 if fine_shape else 8)
+    stream.vertices[:, 6:8] = shape.positions[:, :2] / 100.0 + 0.5
+    if corner is not None:
+        stream.vertices[1, 6:8] = corner
+    if fine_shape:
+        stream.vertices[:, 8:] = 0.0
+        stream.vertices[:, [10, 14]] = 0.01  # u grows along x, v along y
     stream.upload(len(shape.positions), len(shape.triangles))
     fine = None if fine_shape is None else renderer.bump_map(*fine_shape, channels=2)
     texture = render.Texture(renderer.surface, image, occlusion, fine)
@@ -229,6 +238,17 @@ def test_fine_shape_tilts_the_normal_of_each_pixel(surface, shading, is_textured
     middle = plain.shape[1] // 2
     assert np.array_equal(shown[:, : middle - 2], plain[:, : middle - 2])
     assert (shown - plain)[48, middle + 20].sum() > 10
+
+
+def test_fine_shape_does_not_jump_between_unequal_triangles(surface):
+    """A constant slope is lit alike on two triangles of which one is stretched."""
+    slopes = np.full((32, 32, 2), 128, np.uint8)
+    slopes[..., 0] = 190
+    image = plain_image((180, 140, 120))
+    shown = textured(surface, image, fine_shape=(slopes, 100.0), corner=(0.6, 0.4))
+    beside = np.abs(at(shown, 5, -5) - at(shown, -5, 5))
+    across = np.abs(at(shown, 10, 0) - at(shown, 5, -5))
+    assert beside.max() <= across.max() + 2
 
 
 def test_fine_shape_that_is_none_is_refused(surface):
