@@ -14,7 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render, sim
-from risorius.geometry.arrays import Floats64
+from risorius.geometry.arrays import Flags, Floats64
+from risorius.geometry.closest import closest_points
+from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.rays import PARALLEL, crossings
 
 from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
@@ -89,7 +91,8 @@ class SkinDrag:
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
         finger_radius = 16.0  # [mm]
-        self._vertices = np.flatnonzero(distance < finger_radius)
+        is_under = _touched(self._simulation, point, sight, distance < finger_radius)
+        self._vertices = np.flatnonzero(is_under)
         if not len(self._vertices):
             self._vertices = distance.argmin(keepdims=True)
         self._from = positions[self._vertices].copy()
@@ -164,6 +167,24 @@ class SkinDrag:
             return "No muscle draws the skin this way; with Ctrl it is pulled all the same"
         moved = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
         return f"{', '.join(moved).capitalize()}; {pull.short:.1f} mm short of the mouse"
+
+
+def _touched(simulation: sim.Simulation, point: Floats64, sight: Floats64, near: Flags) -> Flags:
+    """Return which of the vertices near a point (V,) a finger touches that comes along `sight`.
+
+    A short path over skin that faces the viewer joins them to the point: a finger on one lip or lid
+    does not touch the other one.
+    """
+    longest = 24.0  # [mm] along edges
+    positions = simulation.positions
+    faces = simulation.faces[near[simulation.faces].any(axis=1)]
+    sides = np.diff(positions[faces], axis=1)
+    faces = faces[np.cross(sides[:, 0], sides[:, 1]) @ sight < 0.0]
+    if not len(faces):
+        return near
+    corners = closest_points(point[None], positions, faces).corners[0]
+    paths = path_lengths(simulation.rest_positions, faces, corners).min(axis=0)
+    return np.asarray(near & (paths < longest))
 
 
 def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:

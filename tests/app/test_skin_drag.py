@@ -1,0 +1,38 @@
+"""A finger on the skin, without a window: it sets the muscles that the user means."""
+
+import numpy as np
+import pytest
+
+from risorius.app.viewer.picture.skin import SkinDrag
+from risorius.app.viewer.settings import Settings
+from tests.app.driving import run
+
+SIGHT = np.array([0.0, 0.0, -1.0])  # from the front
+
+
+@pytest.mark.parametrize(
+    ("landmarks", "up", "wanted", "unwanted"),
+    [
+        ((43, 44), 3.0, "levator_palpebrae", "palpebral_lower"),
+        ((57,), -8.0, "lower", "upper"),
+        ((51,), 5.0, "levator_labii_superioris", "roll_lower"),
+    ],
+)
+def test_a_finger_pulls_one_lip_or_lid(session, landmarks, up, wanted, unwanted):
+    """The lip or lid beyond the opening is not under the finger.
+
+    The finger pulled skin within 16 mm through the air. So an upper lid that was pulled up tensed
+    the lower one, and a lower lip that was pulled down rolled in the upper one.
+    """
+    scene = session.scene
+    place = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)
+    finger = SkinDrag(session, Settings(), place, SIGHT, poses=True)
+    finger.to(place + np.array([0.0, up, 0.0]))
+    finger.let_go()
+    found = {name for name, value in session.values.items() if value}
+    assert any(wanted in name for name in found)
+    assert not [name for name in found if unwanted in name]
+    before = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)
+    run(session, 60)
+    moved = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0) - before
+    assert moved[1] / up > 0.8
