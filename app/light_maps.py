@@ -8,7 +8,9 @@ from __future__ import annotations
 import contextlib
 import math
 import re
+from collections import Counter
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,23 +35,24 @@ class SceneLight(NamedTuple):
     behind: render.MapBackground | None
 
 
-_known: dict[str, SceneLight] = {}  # by name
+_readings = Counter[str]()  # by name: how often `open_light` has read a map
 
 
 def scene_light(name: str) -> SceneLight:
     """Return the light of a name: one of `render.LIGHTS`, or the path of a light map.
 
-    A file is read once; `open_light` reads it again. Raises UserError for an unusable file.
+    A file is read once, until `open_light` reads it again, or many others have been used since.
+    Raises UserError for an unusable file.
     """
-    if name not in _known:
-        _known[name] = _light_of(name)
-    return _known[name]
+    return _light_of(name, _readings[name])
 
 
 def open_light(path: Path) -> str:
     """Read a light map, and return the name of its light; UserError for an unusable file."""
     name = str(path.absolute())
-    _known[name] = _light_of(name)
+    reading = _readings[name] + 1
+    _light_of(name, reading)
+    _readings[name] = reading  # now, because an unusable file must not replace the former map
     return name
 
 
@@ -58,7 +61,9 @@ def is_light(name: str) -> bool:
     return name in render.LIGHTS or Path(name).suffix.lower() in LIGHT_SUFFIXES
 
 
-def _light_of(name: str) -> SceneLight:
+@lru_cache(maxsize=32)  # each map takes 0.8 MB
+def _light_of(name: str, reading: int) -> SceneLight:
+    """Make a light; `reading`: how often its file was read before, so that it is read again."""
     if name in render.LAMPS:
         return SceneLight(render.LAMPS[name], None)
     light_map = render.LIGHT_MAPS.get(name) or read_light_map(Path(name))

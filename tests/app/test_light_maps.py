@@ -1,8 +1,10 @@
 """Light maps from files: Radiance HDR, OpenEXR, and refused files."""
 
+import gc
 import json
 import shutil
 import tracemalloc
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +134,37 @@ def test_a_size_of_openexr_is_refused_by_its_header(tmp_path):
     _write_openexr(path, (32, 32))
     with pytest.raises(UserError, match="has 32 x 32 pixels"):
         check_light_map(path)
+
+
+def test_maps_of_the_window_leave_the_memory(tmp_path):
+    """A map stays while few others are opened; after many others, only its file has it."""
+    paths = [write_map(tmp_path / f"{number}.hdr") for number in range(40)]
+    name = light_maps.open_light(paths[0])
+    first = weakref.ref(light_maps.scene_light(name).behind)
+    for path in paths[1:4]:
+        light_maps.open_light(path)
+    assert light_maps.scene_light(name).behind is first()
+    for path in paths[4:]:
+        light_maps.open_light(path)
+    gc.collect()
+    assert first() is None
+    assert light_maps.scene_light(name).behind is not None
+
+
+def test_a_changed_map_is_read_again(tmp_path):
+    """Opened again, a map is read from its file; if the file is broken, its former light stays."""
+    path = write_map(tmp_path / "sky.hdr")
+    name = light_maps.open_light(path)
+    first = light_maps.scene_light(name)
+    path.write_bytes(HEAD + rgbe(pixels()[:, ::-1].copy()).tobytes())
+    assert light_maps.scene_light(name) is first
+    light_maps.open_light(path)
+    second = light_maps.scene_light(name)
+    assert second.light.to_key[0] * first.light.to_key[0] < 0.0  # the sun is at the other side
+    path.write_bytes(HEAD)
+    with pytest.raises(UserError, match=r"sky\.hdr"):
+        light_maps.open_light(path)
+    assert light_maps.scene_light(name) is second
 
 
 @pytest.mark.slow
