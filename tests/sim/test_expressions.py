@@ -121,6 +121,18 @@ def test_a_funnel_opens_round(simulation, head):
         assert 0.4 < (heights[upper] - heights[lower]) / middle < 0.65
 
 
+@pytest.mark.parametrize("name", ["mouthLeft", "mouthRight"])
+def test_lips_that_move_sideways_leave_no_crack_below_the_nose(simulation, head, name):
+    """No triangle within 12 mm of the base of the nose turns over; the lip moves by 14 mm."""
+    moved = settled_displacement(simulation, {name: 1.0})
+    base = head.vertices[head.landmarks[33]]
+    is_near = norm(head.vertices - base, axis=1) < 12.0
+    near = head.faces[is_near[head.faces].all(axis=1)]
+    assert len(near) > 20
+    assert inverted_triangles(near, head.vertices, simulation.positions) == 0
+    assert abs(moved_landmarks(head, moved, 51)[0]) > 14.0
+
+
 def test_lids_follow_the_gaze_up_a_little(simulation, head):
     """When eyes look up, lids rise by more than 1 and less than 2 mm."""
     moved = settled_displacement(simulation, {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0})
