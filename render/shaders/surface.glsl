@@ -445,7 +445,7 @@ void main() {
     // hollows. Without this, dark skin would show nothing but a smooth highlight.
     float shown_here = dot(front, lightness_weights);
     float around = texture(around_texture, surface.uv).r;
-    float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
+    float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.1);
     lit.specular *= relief * relief * relief * mix(0.36, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion;
 #endif
 #if defined(BUMPS)

@@ -165,6 +165,21 @@ def test_lips_gloss(surface):
     assert shine["lips"] > 1.5 * shine["all lips"] > 0
 
 
+def test_skin_between_dark_hairs_shines_like_bare_skin(surface):
+    """The highlight on skin between stubble is at most half as strong again as on bare skin."""
+    skin = plain_image((112, 78, 62), (256, 256))
+    stubble = skin.copy()
+    stubble.reshape(16, 16, 16, 16, 3)[4:12, :8, 4:12] = (20, 16, 14)
+    shine = {}
+    for name, image in (("skin", skin), ("stubble", stubble)):
+        frames = [
+            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4))
+            for gloss in (0.0, 0.4)
+        ]
+        shine[name] = (frames[1] - frames[0])[30:66, 30:66].astype(int)
+    assert 0 < shine["stubble"].max() < 1.5 * shine["skin"].max()
+
+
 def test_back_faces_keep_the_inner_albedo(surface):
     """The texture lies on the outside only; back faces have the inner albedo."""
     shape = square()
