@@ -10,7 +10,7 @@ from .bones import Bones
 from .controls import Controls, MuscleDrive
 from .face_model import FaceModel
 from .landmarks import polyline_distance
-from .muscle_forces import LineHold
+from .muscles import LineHold
 from .state import State
 
 
@@ -63,7 +63,8 @@ class Anatomy:
         x = self._state.x
         lines = muscles.courses(self._bones.mandible, x - rest, self._held)
         for number, ring in muscles.rings:
-            lines[muscles.names[number]].append(x[ring()])
+            hold = ring()
+            lines[muscles.names[number]].append(hold.weight @ x[hold.vertices])
         return self._in_head(lines)
 
     def _in_head(self, lines: dict[str, list[Floats64]]) -> dict[str, list[Floats64]]:

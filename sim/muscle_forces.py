@@ -38,7 +38,7 @@ from .fibres import (
     over_skin,
 )
 from .muscle_stack import bottom_up, points_along, stack_muscles
-from .muscles import Line, PlacedMuscle, Ring
+from .muscles import Line, LineHold, PlacedMuscle, Ring, skin_shares
 from .rig import LinearMuscle, Rig
 from .skull import RigidMotion
 from .state import State
@@ -62,13 +62,6 @@ class SkinAttachments(NamedTuple):
     holds: Attachments  # by muscle
     pulls: Attachments  # by line, places in samples
     carries: Attachments  # by line, places in points
-
-
-class LineHold(NamedTuple):
-    """The skin that is attached to a line, for drawing; empty if there is none."""
-
-    vertices: Unsigned32  # (n,)
-    weight: Floats64  # (FIBRE_POINTS, n) of each vertex at the line's points, with sum 1
 
 
 @dataclass(frozen=True)
@@ -123,7 +116,8 @@ class MuscleForces:
             ]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
         for muscle, ring in self.rings:
-            lines[self.names[muscle]].append(state.x[ring()])
+            hold = ring()
+            lines[self.names[muscle]].append(hold.weight @ state.x[hold.vertices])
         return lines
 
     def courses(
@@ -155,14 +149,11 @@ class MuscleForces:
         rest: skin at rest, (V, 3) [mm].
         """
         pulls = self.skin.pulls
-        reach = 3.0  # [mm] beyond the nearest vertex
         held = list[LineHold]()
         for points, own in zip(self.bundle.points, pairwise(pulls.rows.tolist()), strict=True):
             vertices = pulls.vertex[slice(*own)]
-            squared = np.square(points[:, None] - rest[vertices]).sum(axis=-1)
-            nearest = squared.min(axis=1, keepdims=True, initial=np.inf if len(vertices) else 0.0)
-            weight = pulls.weight[slice(*own)] * np.exp((nearest - squared) / (nearest + reach**2))
-            held.append(LineHold(vertices, weight / weight.sum(axis=1, keepdims=True)))
+            shares = skin_shares(points, rest[vertices], pulls.weight[slice(*own)])
+            held.append(LineHold(vertices, shares))
         return held
 
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.arrays import Floats64, Integers32
+from ..geometry.arrays import Floats64, Unsigned32
 from ..jit import njit
 from .fibres import (
     FIBRE_POINTS,
@@ -37,7 +37,15 @@ from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import SkinSurface
 
-Ring = Callable[[], Integers32]  # finds skin vertices along a sphincter; used only for drawing
+
+class LineHold(NamedTuple):
+    """The skin that is attached to a line, for drawing; empty if there is none."""
+
+    vertices: Unsigned32  # (n,)
+    weight: Floats64  # (k, n) of each vertex at the line's k points, with sum 1
+
+
+Ring = Callable[[], LineHold]  # finds the skin along a sphincter; used only for drawing
 
 
 class Attachment(NamedTuple):
@@ -100,7 +108,7 @@ def place_muscles(
             elif isinstance(muscle, RingMuscle):
                 points = next(laid)
                 hold = attach_to_ring(muscle, points, landmarks, side, skin)
-                ring = partial(_ring_vertices, muscle, skin.positions, landmarks, hold.weight, side)
+                ring = partial(_skin_of_ring, muscle, skin.positions, landmarks, hold.weight, side)
                 placed.append(
                     PlacedMuscle(name, muscle, side, (Line(points, None, hold),), cache(ring))
                 )
@@ -305,15 +313,30 @@ def _ring_line(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
     return _middle(muscle, landmarks, side) + outline
 
 
-def _ring_vertices(
+def _skin_of_ring(
     muscle: RingMuscle, x: Floats64, landmarks: Floats64, weight: Floats64, side: Side
-) -> Integers32:
-    """Skin vertices nearest to the ellipse of a sphincter, in order, for drawing it."""
-    ring_points = 25  # corners of the line that is drawn for a sphincter
-    outline = _outline(muscle, side, muscle.arc_deg[1], ring_points)[:, :2]
-    middle = _middle(muscle, landmarks, side)
-    attached = np.flatnonzero(weight >= 0.1 * weight.max())
-    off = (x[attached, None, :2] - middle[:2] - outline) ** 2
-    ring = attached[off.sum(axis=2).argmin(axis=0)].astype(np.int32)
-    once: Integers32 = ring[np.insert(np.diff(ring) != 0, 0, True)]
-    return once
+) -> LineHold:
+    """Return the skin along the part of the ellipse that a sphincter holds firmly.
+
+    x, weight: of the skin, and of its attachment, shapes (V, 3) and (V,).
+    """
+    point_count = 25
+    _, half, fade = muscle.arc_deg
+    outline = _outline(muscle, side, min(half + 0.5 * fade, 180.0), point_count)[:, :2]
+    attached = np.flatnonzero(weight >= 0.1 * weight.max()).astype(np.uint32)
+    places = _middle(muscle, landmarks, side)[:2] + outline
+    shares = skin_shares(places, x[attached, :2], weight[attached])
+    smoothing_rounds = 8  # by eye: without them, the line has corners at vertices
+    for _ in range(smoothing_rounds):
+        shares[1:-1] = 0.25 * shares[:-2] + 0.5 * shares[1:-1] + 0.25 * shares[2:]
+    return LineHold(attached, shares)
+
+
+def skin_shares(points: Floats64, skin: Floats64, weight: Floats64) -> Floats64:
+    """Return the shares (n, m) of skin (m, d) in points (n, d), near ones larger; sums are 1."""
+    reach = 3.0  # [mm] beyond the nearest vertex
+    squared = np.square(points[:, None] - skin).sum(axis=-1)
+    nearest = squared.min(axis=1, keepdims=True, initial=np.inf if len(skin) else 0.0)
+    shares = weight * np.exp((nearest - squared) / (nearest + reach**2))
+    normed: Floats64 = shares / shares.sum(axis=1, keepdims=True)
+    return normed

@@ -373,6 +373,24 @@ def test_courses_stay_in_the_skin(simulation):
     np.testing.assert_allclose(course[0], relaxed[major][0][0], atol=0.1)
 
 
+def test_sphincters_are_drawn_without_corners(simulation):
+    """The line of each sphincter is long, and has one corner at most, where a flat loop returns.
+
+    It went from vertex to vertex in zigzags, and that of the cheek raiser was a single point.
+    """
+    sphincters = ("orbicularis_oris", "oculi_orbital", "preseptal", "cheek_puff", "incisivus")
+    courses = simulation.anatomy.courses()
+    names = [name for name in courses if any(each in name for each in sphincters)]
+    assert len(names) > 20
+    for name in names:
+        (line,) = courses[name]
+        steps = np.diff(line, axis=0)
+        assert _length(line) > 10.0, name
+        ways = steps / norm(steps, axis=1, keepdims=True)
+        corners = (ways[1:] * ways[:-1]).sum(axis=1) < 0.5  # turns of more than 60 degrees
+        assert corners.sum() <= 1, name
+
+
 def test_courses_follow_the_lips_apart(simulation):
     """Over an open jaw, muscles of the lower lip go down with it, those of the upper stay."""
     relaxed = simulation.anatomy.courses()
