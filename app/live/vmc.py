@@ -30,6 +30,8 @@ with contextlib.suppress(ImportError):  # see Protocol.check
     from pythonosc.osc_message import OscMessage
     from pythonosc.osc_message import ParseError as MessageError
 
+from risorius.geometry.transforms import angles_of
+
 from .frame import LiveFrame, put_angle, put_shape, shape_named
 
 _BUNDLE = b"#bundle\0"
@@ -110,8 +112,6 @@ def _angles(*turns: Quaternion) -> tuple[float, float, float]:
     whole = Rotation.identity()
     for turn in turns:
         whole *= Rotation.from_quat(turn)
-    matrix = whole.as_matrix()
-    yaw = -math.atan2(matrix[0, 2], matrix[2, 2])
-    pitch = math.asin(min(max(matrix[1, 2], -1.0), 1.0))
-    roll = math.atan2(matrix[1, 0], matrix[1, 1])
-    return math.degrees(yaw), math.degrees(pitch), math.degrees(roll)
+    # Unity's x points to the subject's right, which mirrors yaw and roll.
+    yaw, pitch, roll = angles_of(whole.as_matrix())
+    return -yaw, pitch, -roll

@@ -13,7 +13,6 @@ from the head's axes by some 2 degrees.
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +24,7 @@ import PIL.Image
 
 from risorius import render
 from risorius.geometry.arrays import Flags, Floats32, Floats64
+from risorius.geometry.transforms import angles_of
 
 from ..errors import UserError
 from ..extras import needed
@@ -70,18 +70,14 @@ def labels_of(
     to_head = cranium[:3, :3].T
     # Relative to a head that faces the camera, whose y and z are opposite to the camera's.
     turned = np.diag([1.0, -1.0, -1.0]) @ rotation
-    turns = {
-        "yaw": math.atan2(turned[0, 2], turned[2, 2]),
-        "pitch": math.asin(min(max(turned[1, 2], -1.0), 1.0)),
-        "roll": math.atan2(-turned[1, 0], turned[1, 1]),
-    }
+    angles = zip(("yaw", "pitch", "roll"), angles_of(turned), strict=True)
     directions = {side: gaze(face, side) for side in SIDES}
     sums = face.simulation.controls.sums
     labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
     labels["head"] = {
         "R": _plain(rotation),
         "t": _plain(placed.to_camera(cranium[None, :3, 3])[0]),
-        **{name: round(math.degrees(angle), DIGITS) for name, angle in turns.items()},
+        **{name: round(angle, DIGITS) for name, angle in angles},
     }
     labels["gaze"] = {
         side: {"camera": _plain(placed.rotation @ direction), "head": _plain(to_head @ direction)}

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from risorius.geometry.arrays import Floats64
+from risorius.geometry.transforms import angles_of
 
 from .angles import in_degrees
 from .names import HEAD_ANGLES, angle_of, letters_of
@@ -51,7 +52,9 @@ def head_of(
         if all(matrix is None for matrix in matrices):
             matrices = _turned(values, key, notes)
         if any(matrix is not None for matrix in matrices):
-            angles = np.array([_angles_of(matrix) for matrix in matrices]).T
+            unknown = (math.nan, math.nan, math.nan)
+            turns = [unknown if matrix is None else angles_of(matrix) for matrix in matrices]
+            angles = np.array(turns).T
             return dict(zip(HEAD_ANGLES, angles, strict=True)), {key}
     return {}, set()
 
@@ -113,18 +116,6 @@ def _quaternion(value: Any) -> Floats64 | None:
         return None
     found = np.array(value, dtype=np.float64)
     return found if 0.9 < float(np.linalg.norm(found)) < 1.1 else None
-
-
-def _angles_of(matrix: Floats64 | None) -> tuple[float, float, float]:
-    """Return yaw, pitch and roll [degrees] of a rotation, shape (3, 3); NaN for None."""
-    if matrix is None:
-        return math.nan, math.nan, math.nan
-    ahead = matrix[:, 2] / (np.linalg.norm(matrix[:, 2]) or 1.0)
-    return (
-        math.degrees(math.atan2(ahead[0], ahead[2])),
-        math.degrees(math.asin(max(-1.0, min(1.0, ahead[1])))),
-        math.degrees(math.atan2(matrix[0, 1], matrix[1, 1])),
-    )
 
 
 def _matrix(value: Any) -> Floats64 | None:
