@@ -18,12 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from risorius.geometry.arrays import Floats64, Integers32
-from risorius.geometry.closest import MeshSearch, SurfacePoints
-from risorius.geometry.normals import vertex_normals
-from risorius.geometry.polylines import arc_lengths, evenly_spaced
-from risorius.geometry.read_only import make_read_only
-
+from ..geometry.arrays import Floats64, Integers32
+from ..geometry.closest import MeshSearch, SurfacePoints
+from ..geometry.normals import vertex_normals
+from ..geometry.polylines import arc_lengths, evenly_spaced
+from ..geometry.read_only import make_read_only
 from .data_files import read_toml
 from .fitting.head import FittedHead
 from .fitting.warp import ThinPlateSpline, nearest_on

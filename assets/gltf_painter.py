@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from risorius.geometry.colour import to_screen
-
 from ..geometry.arrays import Floats64, Unsigned8
+from ..geometry.colour import to_screen
 from .data_files import Image
 from .errors import AssetError
 from .gltf_file import GltfFile, entry, fractions

@@ -18,9 +18,8 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from risorius.geometry.read_only import make_read_only
-
 from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned8
+from ..geometry.read_only import make_read_only
 from .errors import AssetError
 from .gltf import read_gltf
 from .pictures import Texture, texture_of

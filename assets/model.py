@@ -19,10 +19,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from risorius.geometry.read_only import make_read_only
-
 from ..geometry.arrays import Floats32, Floats64, Integers32
 from ..geometry.directions import unit_vectors
+from ..geometry.read_only import make_read_only
 from .data_files import Image, read_arrays, read_image
 from .nostrils import lit_nostrils
 from .topology import quarter

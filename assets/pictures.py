@@ -17,9 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from risorius.geometry.colour import to_linear, to_screen
-
 from ..geometry.arrays import Floats32, Integers32, Integers64
+from ..geometry.colour import to_linear, to_screen
 from .data_files import Image
 from .errors import AssetError
 from .user_files import beside, named, read_file

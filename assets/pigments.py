@@ -11,9 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from risorius.geometry.colour import to_linear
-
 from ..geometry.arrays import Floats64
+from ..geometry.colour import to_linear
 
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])

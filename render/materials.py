@@ -5,9 +5,8 @@ from collections.abc import Iterable
 import moderngl
 import numpy as np
 
-from risorius.geometry.colour import to_linear
-
 from ..geometry.arrays import Unsigned8
+from ..geometry.colour import to_linear
 from .camera import PlacedView
 from .parts import PartBuffers
 from .programs import write_uniform

@@ -7,9 +7,8 @@ from typing import NamedTuple, Self
 import moderngl
 import numpy as np
 
-from risorius.geometry.colour import to_linear
-
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.colour import to_linear
 from ..geometry.directions import unit_vectors
 from ..geometry.sides import different_pairs
 from ..geometry.transforms import moved_points

@@ -9,9 +9,8 @@ means of linear light, so black and white texels together do not become too dark
 import moderngl
 import numpy as np
 
-from risorius.geometry.colour import to_linear
-
 from ..geometry.arrays import Floats32
+from ..geometry.colour import to_linear
 from .surface import Image, Surface, is_software
 
 _SAMPLED_TEXELS = 10_000  # approximate number of texels for the median of redness

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -48,10 +48,10 @@ class BentPart:
     colours: Floats32
     bone: str
     shine: float
-    is_enclosed: bool = True
-    strand_radius: float = 0.0
-    striation: None = None
-    roots: None = None
+    is_enclosed: bool
+    strand_radius: float
+    striation: ClassVar[None] = None
+    roots: ClassVar[None] = None
 
     def follow(self, now: FaceNow) -> None:
         """Change the shape to fit the current face, relative to the part's bone."""
@@ -65,5 +65,4 @@ class BentPart:
 
 def drawn_attributes(part: Any) -> dict[str, Any]:
     """Return the attributes of a part that drawing needs."""
-    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
-    return {name: getattr(part, name) for name in (*names, "is_enclosed", "strand_radius")}
+    return {each.name: getattr(part, each.name) for each in fields(BentPart)}

@@ -20,10 +20,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius.geometry.normals import cross_products, vertex_normals
-
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
+from ...geometry.normals import cross_products, vertex_normals
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh

@@ -24,10 +24,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
+from ...geometry.normals import vertex_normals
 from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load

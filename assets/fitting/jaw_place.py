@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from risorius.geometry.arrays import Floats64, Integers32
+from ...geometry.arrays import Floats64, Integers32
 
 USUAL_WIDTH = 136.0  # [mm] between landmarks 0 and 16; other lengths hold for this width
 

@@ -29,10 +29,9 @@ from typing import Annotated, Any
 import numpy as np
 import scipy
 
-from risorius.schema import Within, parsed_json, read
-
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.mesh_graph import path_lengths, pieces_of
+from ...schema import Within, parsed_json, read
 from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..user_files import named, read_file

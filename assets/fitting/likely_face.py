@@ -19,9 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.normals import vertex_normals
 from ..data_files import read_arrays
 from ..model import Head
 from .warp import Similarity, nearest_on

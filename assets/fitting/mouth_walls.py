@@ -16,10 +16,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.rays import exits
-
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
+from ...geometry.rays import exits
 from ...geometry.sides import sides_of
 from ...geometry.transforms import moved_points
 from ..model import Part

@@ -14,10 +14,9 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import vertex_normals
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .eyeballs import ball_of_pieces, ball_of_socket

@@ -10,9 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from risorius.geometry.closest import SurfacePoints
-
 from ...geometry.arrays import Flags, Floats64, Integers32
+from ...geometry.closest import SurfacePoints
 from ...geometry.mesh_graph import path_lengths
 from ..model import Head
 from .mesh_validation import SkinPiece

@@ -20,13 +20,12 @@ import scipy
 from scipy import sparse
 from scipy.sparse.linalg import cg
 
-from risorius.geometry.closest import SurfacePoints
-from risorius.geometry.normals import cross_products
-from risorius.geometry.texels import Texels, rates
-
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64, Unsigned8
+from ...geometry.closest import SurfacePoints
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import cross_products
 from ...geometry.sides import edges_of
+from ...geometry.texels import Texels, rates
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles

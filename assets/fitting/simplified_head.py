@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from risorius.geometry.normals import vertex_normals
-
+from ...geometry.normals import vertex_normals
 from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load

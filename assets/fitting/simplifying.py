@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.arrays import Flags, Floats32, Floats64, Integers32
-from risorius.geometry.mesh_graph import pieces_of
-from risorius.geometry.read_only import make_read_only
-from risorius.geometry.sides import different_pairs, sides_of
-
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32
+from ...geometry.mesh_graph import pieces_of
+from ...geometry.read_only import make_read_only
+from ...geometry.sides import different_pairs, sides_of
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
 from ..topology import border_vertices, collapsed, is_manifold

@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats64
+from ...geometry.normals import vertex_normals
 from ..data_files import read_arrays
 from ..loading import load
 from ..model import Part

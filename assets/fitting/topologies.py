@@ -20,12 +20,11 @@ from typing import Annotated
 
 import numpy as np
 
-from risorius.folders import configuration_folder
-from risorius.schema import Record, Within, parsed_json, read
-
+from ...folders import configuration_folder
 from ...geometry.arrays import Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.sides import sides_of
+from ...schema import Record, Within, parsed_json, read
 from ..data_files import read_toml
 from ..errors import AssetError
 from ..loading import load

@@ -17,11 +17,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius.geometry.closest import SurfacePoints, closest_points
-from risorius.geometry.distance_sums import subtract_distances
-from risorius.geometry.read_only import make_read_only
-
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.closest import SurfacePoints, closest_points
+from ...geometry.distance_sums import subtract_distances
+from ...geometry.read_only import make_read_only
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,9 +24,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius.geometry.colour import to_linear, to_screen
-
 from ...geometry.arrays import Floats32, Floats64, Integers64
+from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
@@ -109,7 +108,7 @@ def recoloured(
     - behind: distances of texels behind the hairline of `features` [mm], (H, W), if they are known.
     """
     # This module imports numba, which takes long.
-    from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
+    from ...geometry.tones import Absorbed, Grown, Hairs, absorb, compose
 
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")

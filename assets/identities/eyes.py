@@ -14,9 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from risorius.geometry.colour import to_linear, to_screen
-
 from ...geometry.arrays import Floats32, Floats64
+from ...geometry.colour import to_linear, to_screen
 from ..data_files import read_arrays
 from ..loading import load
 from ..model import Eye, Part

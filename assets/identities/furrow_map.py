@@ -13,10 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from risorius.geometry.carving import carve
-from risorius.geometry.texels import Texels
-
 from ...geometry.arrays import Floats32, Floats64, Integers64
+from ...geometry.carving import carve
+from ...geometry.texels import Texels
 from ..data_files import Image
 from ..loading import load
 from ..model import Wrinkles

@@ -16,10 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import vertex_normals
 from ..model import Part
 from ..smooth import Points, smooth_step
 from ..topology import quarter

@@ -11,9 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from risorius.geometry.texels import Texels
-
 from ...geometry.arrays import Floats64
+from ...geometry.texels import Texels
 from ..loading import load
 from ..smooth import smooth_step
 from .person import Person

@@ -18,9 +18,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from risorius.geometry.texels import Texels
-
 from ...geometry.arrays import Floats32, Floats64
+from ...geometry.texels import Texels
 from ..loading import load
 from ..model import Wrinkles
 from ..smooth import smooth_step

@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats64
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import vertex_normals
 from ..model import Part
 from ..smooth import smooth_step
 from ..topology import grid_faces

@@ -15,10 +15,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy
 
-from risorius.geometry.intersections import self_intersections
-from risorius.geometry.normals import cross_products, vertex_normals
-
 from ...geometry.arrays import Floats32, Floats64, Integers32
+from ...geometry.intersections import self_intersections
+from ...geometry.normals import cross_products, vertex_normals
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from risorius.geometry.texels import Texels
-
 from ...geometry.arrays import Floats32, Floats64
+from ...geometry.texels import Texels
 from ..data_files import Image
 from ..model import FineShape
 

@@ -12,10 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from risorius.geometry.normals import vertex_normals
-
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import vertex_normals
 from ..fitting.organs import EYE_LANDMARKS
 from ..loading import load
 

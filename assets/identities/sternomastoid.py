@@ -12,8 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from risorius.geometry.texels import Texels
-
+from ...geometry.texels import Texels
 from ..loading import load
 from ..smooth import smooth_step
 from .person import Person
