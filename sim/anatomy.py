@@ -9,8 +9,8 @@ from ..geometry.arrays import Floats64
 from .bones import Bones
 from .controls import Controls, MuscleDrive
 from .face_model import FaceModel
-from .landmarks import polyline_distance
 from .muscles import LineHold
+from .polylines import polyline_distance
 from .state import State
 
 

@@ -21,7 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
-from .landmarks import mouth_line, polyline_distance
+from .landmarks import mouth_line
+from .polylines import polyline_distance
 from .skull import Eyeball
 from .surface import SkinSurface
 

@@ -20,12 +20,12 @@ from .landmarks import (
     LOWER_INNER,
     UPPER_INNER,
     mouth_line,
-    polyline_distance,
     smoothstep,
 )
 from .lids import Lids, place_lids
 from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles
+from .polylines import polyline_distance
 from .skin_model import SkinModel
 from .substep import LONGEST_SUBSTEP, ROUNDING
 from .surface import SkinSurface

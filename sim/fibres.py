@@ -27,6 +27,7 @@ from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..geometry.directions import unit_vectors
 from ..jit import njit
 from .landmarks import Side
+from .polylines import nearest_on_line, reached_along
 from .rig import Fibre
 from .skull import RigidMotion
 from .surface import SkinSurface
@@ -177,7 +178,7 @@ def hang_on_fibre(
     cut_widths = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
     bulge_spread = 0.3  # of the fibre's length (fitted)
     end = len(points) - 1
-    reached = _reached(points)
+    reached = reached_along(points)
     low = np.empty(3)
     high = np.empty(3)
     for axis in range(3):
@@ -194,7 +195,7 @@ def hang_on_fibre(
             outside += off * off
         if outside > farthest:
             continue
-        squared, along = _nearest(points, reached, place, foot)
+        squared, along = nearest_on_line(points, reached, place, foot)
         past = 0.0
         for axis in range(3):
             ahead = (points[end, axis] - points[end - 1, axis]) / last
@@ -214,55 +215,6 @@ def hang_on_fibre(
         for axis in range(3):
             steady[n, axis] = held * (hold.drawn * along) * (foot[axis] - place[axis])
             steady[n, axis] += held * bulge * attached.normals[n, axis]
-
-
-@njit
-def arcs_along(points: Floats64, positions: Floats64) -> Floats64:
-    """Return where a line (k, 3) is nearest to each of the positions (n, 3): arc lengths 0..1."""
-    reached = _reached(points)
-    arc = np.empty(len(positions))
-    foot = np.empty(3)
-    for n in range(len(positions)):
-        _, arc[n] = _nearest(points, reached, positions[n], foot)
-    return arc
-
-
-@njit
-def _reached(points: Floats64) -> Floats64:
-    """Return the length of a line (k, 3) up to each of its points, shape (k,)."""
-    reached = np.zeros(len(points))
-    for k in range(len(points) - 1):
-        squared = 0.0
-        for axis in range(3):
-            squared += (points[k + 1, axis] - points[k, axis]) ** 2
-        reached[k + 1] = reached[k] + max(np.sqrt(squared), 1e-9)
-    return reached
-
-
-@njit
-def _nearest(
-    points: Floats64, reached: Floats64, place: Floats64, foot: Floats64
-) -> tuple[float, float]:
-    """Return the squared distance of a place from a line, and its place along it; fills `foot`."""
-    end = len(points) - 1
-    nearest = np.inf
-    arc = 0.0
-    for k in range(end):
-        length = reached[k + 1] - reached[k]
-        dot = 0.0
-        for axis in range(3):
-            dot += (place[axis] - points[k, axis]) * (points[k + 1, axis] - points[k, axis])
-        t = min(max(dot / length**2, 0.0), 1.0)
-        squared = 0.0
-        for axis in range(3):
-            at = points[k, axis] + t * (points[k + 1, axis] - points[k, axis])
-            squared += (place[axis] - at) ** 2
-        if squared < nearest:  # of equal distances the first counts
-            nearest = squared
-            arc = (reached[k] + t * length) / reached[end]
-            for axis in range(3):
-                foot[axis] = points[k, axis] + t * (points[k + 1, axis] - points[k, axis])
-    return nearest, arc
 
 
 @njit

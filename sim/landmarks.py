@@ -21,7 +21,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers64
-from ..jit import njit
 
 LANDMARK_COUNT = 68
 
@@ -83,33 +82,6 @@ class LandmarkPoint:
         for number, weight in self.mix:
             point += weight * landmarks[MIRRORED[number] if mirrored else number]
         return point + np.array(self.offset) * (side.sign, 1.0, 1.0)
-
-
-def polyline_distance(points: Floats64, corners: Floats64) -> Floats64:
-    """Distance [mm] of points (N, 3) to the polyline through `corners` (K, 3), shape (N,)."""
-    squared = np.empty(len(points))
-    _fill_squared(np.ascontiguousarray(points), np.ascontiguousarray(corners), squared)
-    return np.sqrt(squared)
-
-
-@njit
-def _fill_squared(points: Floats64, corners: Floats64, squared: Floats64) -> None:
-    """Fill squared distances (N,) of points to a polyline."""
-    for n in range(len(points)):
-        squared[n] = np.inf
-        for k in range(len(corners) - 1):
-            dot = 0.0
-            length = 0.0
-            for axis in range(3):
-                along = corners[k + 1, axis] - corners[k, axis]
-                dot += (points[n, axis] - corners[k, axis]) * along
-                length += along * along
-            t = min(max(dot / max(length, 1e-12), 0.0), 1.0)
-            away = 0.0
-            for axis in range(3):
-                along = corners[k + 1, axis] - corners[k, axis]
-                away += (points[n, axis] - (corners[k, axis] + t * along)) ** 2
-            squared[n] = min(squared[n], away)
 
 
 def mouth_line(landmarks: Floats64) -> Floats64:

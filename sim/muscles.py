@@ -26,13 +26,13 @@ from .fibres import (
     AttachedPoints,
     FibreHold,
     Gate,
-    arcs_along,
     bent_to_skin,
     gate_at,
     hang_on_fibre,
     straight_fibre,
 )
 from .landmarks import Side
+from .polylines import arcs_along
 from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import SkinSurface

@@ -31,7 +31,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Unsigned32
 from ..jit import njit
-from .landmarks import polyline_distance
+from .polylines import polyline_distance
 from .rig import Tissue
 from .skull import RigidMotion
 from .state import State

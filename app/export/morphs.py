@@ -36,13 +36,14 @@ class Morphs:
     error: float
 
 
-def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) -> Morphs:
-    """Return few targets with an error of at most `tolerance`.
+def decompose(moved: Floats64) -> Morphs:
+    """Return few targets with an error of at most TOLERANCE.
 
-    moved: displacements of each vertex from rest in each frame, shape (N, V, 3), in the unit of
-    `tolerance`. If `most` targets do not suffice, the error is larger. Some readers count targets
-    in a byte, and the 52 named targets also count.
+    moved: displacements of each vertex from rest in each frame [mm], shape (N, V, 3). If 198
+    targets do not suffice, the error is larger. Some readers count targets in a byte, and the 52
+    named targets also count.
     """
+    most = 198
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     # Components below this share of the largest component are rounding errors.
     rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), NOTHING)).sum())
@@ -63,7 +64,7 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
         while low < high:
             count = (low + high) // 2
             off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
-            if off.max() <= tolerance:
+            if off.max() <= TOLERANCE:
                 high = count
             else:
                 low = count + 1
@@ -75,7 +76,7 @@ def decompose(moved: Floats64, tolerance: float = TOLERANCE, most: int = 198) ->
         weighing *= np.sqrt(np.maximum(ratio, 0.03))
         weighing /= weighing.max()
         low = max(high - 15, 0)  # a round saves at most 15 shapes
-    return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
+    return min(found, key=lambda each: (max(each.error, TOLERANCE), len(each.targets)))
 
 
 def follow(weights: Floats64, changes: Floats64) -> Floats64:

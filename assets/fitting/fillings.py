@@ -91,7 +91,7 @@ def _filling(
     none = np.zeros(0, np.int64)
     edge = np.concatenate([upper[:-1], lower[:-1]])
     centre = edge.mean(axis=0)
-    width = np.linalg.norm(upper[-1] - upper[0])
+    width = float(np.linalg.norm(upper[-1] - upper[0]))
     height = (upper - lower[::-1])[:, 1].mean()
     if height < 0.02 * width:  # shut: no triangle lies in it
         return none
@@ -106,9 +106,7 @@ def _filling(
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
         if _is_polygon(faces[found]):
-            border = vertices[np.unique(faces[found])]
-            off = scipy.spatial.cKDTree(border).query(around)[0]
-            return found if off.max() < 0.2 * width else none
+            return found if _reaches(vertices[faces[found]], around, width) else none
     return none
 
 
@@ -119,7 +117,7 @@ def _sheet(
     none = np.zeros(0, np.int64)
     edge = np.concatenate([upper[:-1], lower[:-1]])
     centre = around.mean(axis=0)
-    width = np.linalg.norm(upper[-1] - upper[0])
+    width = float(np.linalg.norm(upper[-1] - upper[0]))
     least_height = 0.1  # relative to the width; lids that are nearly shut have no opening
     if (upper - lower[::-1])[:, 1].max() < least_height * width:
         return none
@@ -136,10 +134,14 @@ def _sheet(
         inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
         found = _without_teeth(faces, inside)
         if _is_disc(faces[found]):
-            border = vertices[np.unique(faces[found])]
-            off = scipy.spatial.cKDTree(border).query(around)[0]
-            return found if off.max() < 0.2 * width else none
+            return found if _reaches(vertices[faces[found]], around, width) else none
     return none
+
+
+def _reaches(corners: Floats64, around: Floats64, width: float) -> bool:
+    """Whether triangles (m, 3, 3) have corners near all landmarks (n, 3) of an opening."""
+    off = scipy.spatial.cKDTree(corners.reshape(-1, 3)).query(around)[0]
+    return bool(off.max() < 0.2 * width)
 
 
 def _without_teeth(faces: Integers32, found: Integers) -> Integers:

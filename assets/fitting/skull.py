@@ -9,7 +9,7 @@ leave the skin, it is pushed inward.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +28,8 @@ FAT = np.array([0.82, 0.62, 0.42])  # sRGB
 FLESH = np.array([0.50, 0.17, 0.15])  # sRGB
 
 
-def build_skull(
-    head: Any,
-    pivots: Mapping[str, Floats64],
-    names: Collection[str] = ("cranium", "mandible", "spine", "nose", "throat"),
-) -> dict[str, Part]:
-    """Build the parts in `names` under the skin at rest: name -> part.
+def build_skull(head: Any, pivots: Mapping[str, Floats64]) -> dict[str, Part]:
+    """Build skull, spine, nose and throat under the skin at rest: name -> part.
 
     head: any object with vertices (V, 3) [mm], faces (F, 3) and landmarks (68,). pivots: "mandible"
     -> the points around which it turns [mm]. If the file is missing or broken, raises AssetError.
@@ -73,7 +69,7 @@ def build_skull(
     }
     brows = head.vertices[head.landmarks[17:27], 1].max()
     back = pivots["mandible"][2] - 28.0  # [mm]; bone behind this z is pushed, too
-    for name in names:
+    for name in ("cranium", "mandible", "spine", "nose", "throat"):
         faces = arrays[f"{name}_faces"].T.astype(np.int32)  # stored as differences
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]

@@ -17,7 +17,7 @@ from ...geometry.arrays import Floats64
 from ..model import MASK, Part
 from ..smooth import smooth_step
 from .person import Person
-from .wires import Colour, Tube, beside_head, sheet, tube
+from .wires import Colour, Tube, beside_head, joined, sheet, tube
 
 MASKS: Mapping[str, Colour] = MappingProxyType(
     {
@@ -60,14 +60,12 @@ class _Piece(NamedTuple):
 
 def _joined(pieces: list[_Piece]) -> Part:
     """Join pieces to one part."""
-    surfaces = [each.surface for each in pieces]
-    firsts = np.cumsum([0, *(len(each.points) for each in surfaces[:-1])])
-    faces = [each.faces + first for each, first in zip(surfaces, firsts, strict=True)]
+    surface = joined([each.surface for each in pieces])
     return Part(
         name=MASK,
-        vertices=np.vstack([each.points for each in surfaces]).astype(np.float32),
-        normals=np.vstack([each.normals for each in surfaces]).astype(np.float32),
-        faces=np.vstack(faces).astype(np.int32),
+        vertices=surface.points.astype(np.float32),
+        normals=surface.normals.astype(np.float32),
+        faces=surface.faces,
         colours=np.vstack([each.colours for each in pieces]).astype(np.float32),
         bone="cranium",
         shine=0.0,

@@ -20,7 +20,7 @@ from ...geometry.normals import vertex_normals
 from ..model import Part
 from ..smooth import smooth_step
 from ..topology import grid_faces
-from .wires import Colour, Tube, sheet
+from .wires import Colour, Tube, joined, sheet
 
 SHIRTS: Mapping[str, Colour] = MappingProxyType(
     {
@@ -51,14 +51,12 @@ def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
     skin: vertices of the person's head [mm], (V, 3). Raises KeyError for other colours and collars.
     """
     pieces = COLLARS[collar](shirt, skin, np.array(SHIRTS[colour]))
-    surfaces = [each.surface for each in pieces]
-    firsts = np.cumsum([0, *(len(each.points) for each in surfaces[:-1])])
-    faces = [each.faces + first for each, first in zip(surfaces, firsts, strict=True)]
+    surface = joined([each.surface for each in pieces])
     return replace(
         shirt,
-        vertices=np.vstack([each.points for each in surfaces]).astype(np.float32),
-        normals=np.vstack([each.normals for each in surfaces]).astype(np.float32),
-        faces=np.vstack(faces).astype(np.int32),
+        vertices=surface.points.astype(np.float32),
+        normals=surface.normals.astype(np.float32),
+        faces=surface.faces,
         colours=np.clip(np.vstack([each.colours for each in pieces]), 0.0, 1.0).astype(np.float32),
     )
 

@@ -19,7 +19,7 @@ from ..model import GLASSES, Part
 from .mask import MASKS, mask
 from .person import Person
 from .shirts import in_shirt
-from .wires import Colour, Tube, beside_head, tube
+from .wires import Colour, beside_head, joined, tube
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,16 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
         ear = skin[person.anatomy[f"tragion_{name}"]]
         temple = _temple(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
         tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
-    return _joined(tubes, frame)
+    surface = joined(tubes)
+    return Part(
+        name=GLASSES,
+        vertices=surface.points.astype(np.float32),
+        normals=surface.normals.astype(np.float32),
+        faces=surface.faces,
+        colours=np.tile(np.array(frame.colour, np.float32), (len(surface.points), 1)),
+        bone="cranium",
+        shine=frame.shine,
+    )
 
 
 def _in_front(points: Floats64, lens: Floats64, cornea: float) -> Floats64:
@@ -150,19 +159,3 @@ def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) ->
     turn = np.linspace(0.0, 1.0, 9)[1:, None]
     behind = straight[-1] + turn * [0.0, 0.0, -16.0] + turn**2 * [-side * 2.0, -17.0, 0.0]
     return np.vstack([straight, behind])
-
-
-def _joined(tubes: list[Tube], frame: Frame) -> Part:
-    """Join tubes to one part in the colour of a frame."""
-    firsts = np.cumsum([0, *(len(each.points) for each in tubes[:-1])])
-    faces = [each.faces + first for each, first in zip(tubes, firsts, strict=True)]
-    points = np.vstack([each.points for each in tubes])
-    return Part(
-        name=GLASSES,
-        vertices=points.astype(np.float32),
-        normals=np.vstack([each.normals for each in tubes]).astype(np.float32),
-        faces=np.vstack(faces).astype(np.int32),
-        colours=np.tile(np.array(frame.colour, np.float32), (len(points), 1)),
-        bone="cranium",
-        shine=frame.shine,
-    )

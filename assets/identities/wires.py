@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,15 @@ class Tube(NamedTuple):
     points: Floats64
     normals: Floats64
     faces: Integers32
+
+
+def joined(pieces: Sequence[Tube]) -> Tube:
+    """Join wires and sheets to one surface."""
+    points = np.vstack([each.points for each in pieces])
+    normals = np.vstack([each.normals for each in pieces])
+    firsts = np.cumsum([0, *(len(each.points) for each in pieces[:-1])])
+    faces = [each.faces + first for each, first in zip(pieces, firsts, strict=True)]
+    return Tube(points, normals, np.vstack(faces).astype(np.int32))
 
 
 def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:

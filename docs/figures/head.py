@@ -42,7 +42,7 @@ def system() -> Image:
     return figures.sheet(cells, len(steps))
 
 
-def head_views(size: tuple[int, int] = CELL) -> Image:
+def head_views() -> Image:
     """The head at rest, a row for each style."""
     scene = FaceScene()
     cells = []
@@ -55,7 +55,7 @@ def head_views(size: tuple[int, int] = CELL) -> Image:
     for title, style in styles.items():
         for view in views:
             look = Refinement(refiner=STATIC if title == "flat" else None)
-            options = CaptureOptions(size, refinement=look, style=style, camera=view)
+            options = CaptureOptions(CELL, refinement=look, style=style, camera=view)
             cells.append((f"{view}, {title}", figures.shoot(scene, {}, options)))
     return figures.sheet(cells, len(views))
 

@@ -7,7 +7,7 @@ import pytest
 import scipy
 from scipy import sparse
 
-from risorius.sim.landmarks import polyline_distance
+from risorius.sim.polylines import polyline_distance
 from risorius.sim.skin_graph import graph_of
 from risorius.sim.surface import build_surface
 
