@@ -137,17 +137,17 @@ def test_a_plain_table_needs_no_word(tmp_path):
 @pytest.mark.parametrize(
     ("codec", "name"),
     [("utf-16", "UTF-16"), ("utf-16-le", "UTF-16"), ("utf-16-be", "UTF-16"), ("utf-32", "UTF-32"),
-     ("latin-1", "Windows-1252")],
+     ("latin-1", "Windows-1252"), ("utf-8", ""), ("utf-8-sig", "")],
 )  # fmt: skip
 def test_encodings(codec, name, tmp_path):
-    """Names beyond ASCII are read correctly, and the encoding is reported."""
+    """Names beyond ASCII are read correctly, and encodings other than UTF-8 are reported."""
     path = tmp_path / "take.csv"
     path.write_bytes(table({"für später": np.ones(180)} | COLUMNS).encode(codec))
     assert is_recording(path)
     take = read_take(path)
     assert take.unknown == ("für später",)
     assert take.channels["jawOpen"] == approx(JAW, abs=1e-6)
-    assert has_note(take.notes, f"read as {name}")
+    assert has_note(take.notes, f"read as {name}") == bool(name)
 
 
 def test_json_in_utf_16(tmp_path):

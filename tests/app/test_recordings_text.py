@@ -1,4 +1,4 @@
-"""Recordings as text: encodings, line ends, comments, and foreign rows."""
+"""Recordings as text: line ends, comments, and foreign rows."""
 
 import math
 import os
@@ -23,16 +23,6 @@ def check(path):
     assert take.channels["AU4"] == approx(0.25)
     assert take.times == approx(COLUMNS["time"], abs=1e-6)
     return take.notes
-
-
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
-def test_encodings(encoding, tmp_path):
-    """With a byte order mark or without, a name beyond ASCII is read correctly."""
-    path = tmp_path / "take.csv"
-    text = table({"Stimmung für später": [1] * 6} | COLUMNS)
-    path.write_bytes(text.encode(encoding))
-    check(path)
-    assert read_take(path).unknown == ("Stimmung für später",)
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
