@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from risorius import refine
+from risorius import refine, sim
+from risorius.assets.identities import make_person, sample_identity
 from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
+from risorius.sim.face_model import build_face_model
 from tests.sim.poses import (
     FRAME,
     both_sides,
@@ -131,6 +133,18 @@ def test_lips_that_move_sideways_leave_no_crack_below_the_nose(simulation, head,
     assert len(near) > 20
     assert inverted_triangles(near, head.vertices, simulation.positions) == 0
     assert abs(moved_landmarks(head, moved, 51)[0]) > 14.0
+
+
+def test_rounded_lips_leave_the_sills_of_nostrils():
+    """Skin beside the base of the nose turns by less than a right angle on a short upper lip."""
+    woman = make_person(sample_identity(18))
+    simulation = sim.Simulation(build_face_model(woman))
+    moved = settled_displacement(simulation, {"AU18": 1.0, "AU22": 0.1, "AU26": 0.11})
+    away = woman.vertices - woman.vertices[woman.landmarks[33]]
+    is_sill = (np.abs(np.abs(away[:, 0]) - 4.5) < 2.0) & (norm(away, axis=1) < 8.5)
+    sills = woman.faces[is_sill[woman.faces].all(axis=1)]
+    assert len(sills) >= 4
+    assert inverted_triangles(sills, woman.vertices, woman.vertices + moved) == 0
 
 
 def test_lids_follow_the_gaze_up_a_little(simulation, head):
