@@ -1,5 +1,6 @@
 """The timeline in the real window: keys, in rows and as curves, are dragged and undone."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +65,22 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     press_keys(viewer, "ctrl+shift+z")
     assert pose_times(viewer)[1] == time
     assert not session.work.script_is_unsaved
+
+
+def test_the_first_key_of_a_track_leaves_the_ruler_under_the_mouse(viewer):
+    """The rows of a new track appear when the mouse leaves the ruler, which they move up."""
+    session = viewer.session
+    session.edit(replace(session.script, tracks={}))
+    session.seek(0.5)
+    settle(viewer)
+    before = viewer.gui.places["time"]
+    xdotool(viewer, "mousemove", *middle(viewer, "time"))
+    session.set("AU12_left", 0.5)
+    press_keys(viewer, "k")
+    assert len(session.script.tracks) == 1
+    assert viewer.gui.places["time"] == before
+    xdotool(viewer, "mousemove_relative", "--", 0, -200)
+    assert viewer.gui.places["time"][1] < before[1]
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer):

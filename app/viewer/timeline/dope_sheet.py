@@ -70,6 +70,8 @@ class DopeSheet:
         self.rows: tuple[Track, ...] = ()  # the visible rows among all
         self._known: Script | None = None  # the script of these rows
         self._are_dense: dict[str, bool] = {}  # by name: whether keys are too dense to distinguish
+        self._is_held = False  # whether the mouse holds the ruler or keys, which must not move
+        self._shown_rows = 0.0  # height of rows without scrolling, in rows
         self._bottom = 0.0  # bottom of the whole sheet [window units]
         self._tops = [0.0]  # tops of rows, and of one after the last [window units]
         self._gutter = 0.0  # width of row names [window units]
@@ -85,7 +87,9 @@ class DopeSheet:
         """Return the height of ruler and rows [window units], limited by `room`."""
         self._refresh()
         most_rows = 6  # the user scrolls to other rows
-        rows = em(self.ROW_HEIGHT) * sum(track.height for track in self.rows[:most_rows])
+        if not self._is_held:
+            self._shown_rows = sum(track.height for track in self.rows[:most_rows])
+        rows = em(self.ROW_HEIGHT) * self._shown_rows
         graph_height = 14.0  # [em] by default
         wanted = em(graph_height) if self.settings.shows_curves else rows
         above = em(self.RULER_HEIGHT) + self._waveform.height
@@ -125,6 +129,7 @@ class DopeSheet:
         scrubbed = em(self.RULER_HEIGHT) + self._waveform.height
         imgui.invisible_button("##time", (room.x - self._gutter, scrubbed))
         self._gui.remember("time")
+        self._is_held = imgui.is_item_hovered() or self._drag is not None
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
