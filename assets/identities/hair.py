@@ -17,6 +17,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
+from ...geometry.closest import closest_points
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
 from ..model import Part
@@ -164,8 +165,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     painted_depth = 1.0  # [mm] behind the hairline, up to which hairs are only painted
-    is_hairy = (behind[faces] > painted_depth).any(axis=1)
-    faces, rows, angle = _parted(faces[is_hairy], angle)
+    faces, rows, angle = _parted(faces[(behind[faces] > painted_depth).any(axis=1)], angle)
     points, normals, behind, covers = (each[rows] for each in (points, normals, behind, covers))
     out = unit_vectors(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
@@ -184,6 +184,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
     way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
     clearance = 0.5  # [mm] over the skin
+    way = _over_skin(way, points, normals, scalp, long)
     sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
@@ -215,6 +216,24 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     hangs = (normals[:, 1] < upward_fraction) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
     return from_within(hair, faces[hangs[faces].all(axis=1)]), hair, locks_on(hair, growth)
+
+
+def _over_skin(
+    way: Points, points: Points, normals: Points, scalp: Scalp, long: Floats64
+) -> Points:
+    """Raise strands that would enter the skin ahead of them, which is hollow behind ears.
+
+    way: vectors from roots to tips [mm], (n, 3). points: roots on the skin [mm], (n, 3). normals:
+    unit normals there, (n, 3). long: lengths of strands [mm], (n,). Returns new vectors, (n, 3).
+    """
+    clearance = 1.0  # [mm] over the skin
+    rising_share = 0.5  # of a strand's length that its tip rises at most, else it stands up
+    outline = points + MEAN * way
+    skin = closest_points(outline, scalp.points, scalp.faces)
+    above = ((outline - skin.interpolate(scalp.points)) * normals).sum(axis=1)
+    lacking = np.maximum(clearance + skin.interpolate(scalp.covers) - above, 0.0)
+    rise = np.minimum(lacking / MEAN, rising_share * long)
+    return np.asarray(way + rise[:, None] * normals)
 
 
 def _tones(points: Points, away: Floats64) -> Floats64:

@@ -22,6 +22,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.hair import CUTS, Fall, Hairline
 from risorius.assets.identities.long_hair import _reach, _turned
+from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.render import Style
 from tests.assets.checks import check_part
@@ -233,6 +234,16 @@ def test_no_slit_is_below_the_hem_of_a_bald_crown():
 def test_no_slit_is_below_the_outline_of_hair_from_above():
     """From above, no gap shows below the outline of swept-back hair."""
     assert gaps(haired("knotted"), slice(0, 330), camera="0,65") < 40
+
+
+def test_hair_behind_ears_lies_above_the_skin():
+    """Strands combed back behind an ear stay out of the skin, which showed as a grey patch."""
+    person = person_called(2)
+    hair = hair_of(person)
+    skin = closest_points(hair.vertices, person.vertices, person.faces)
+    off = hair.vertices - skin.interpolate(person.vertices)
+    is_dense = hair.striation[:, 5] > 0.5
+    assert (off * hair.normals).sum(axis=1)[is_dense].min() > -0.5  # [mm]; it was -1.5
 
 
 def test_strands_turn_along_great_circles(generator):
