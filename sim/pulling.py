@@ -15,6 +15,8 @@ Few controls are used. The first is the control that reduces the sum most. The s
 that reduces the sum most together with the first, and so on. The slopes at the start determine the
 choice. So the controls depend only on the targets, not on the path of the finger, and the pose
 stays when the finger is released.
+No control moves the finger's skin away from its target. Otherwise a chin that is drawn down would
+also thrust the jaw forward, because this holds the rest of the jaw in its place.
 A target beyond the reach of the strongest control is moved back to this reach, because the price
 grows with d, and no control would be used farther out.
 
@@ -102,7 +104,7 @@ class Pull:
             firsts = [names[0] for names in self.candidates]
             values = controls.values
             limits = [controls.limits[first] for first in firsts]
-            self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
+            self._limits = np.array(limits, np.float64).reshape(-1, 2).T
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
@@ -115,8 +117,7 @@ class Pull:
             least_motion = 0.1
             is_meant = here > least_motion * largest
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
-            self._low = self._low[is_meant]
-            self._high = self._high[is_meant]
+            self._limits = self._limits[:, is_meant]
             self._value = self._start = self._start[is_meant]
             self._slope = self._slope[is_meant]
             self._first = self._slope.copy()
@@ -187,11 +188,21 @@ class Pull:
             self._take_values()
 
     def _aim(self) -> None:
-        """Return the targets of the finger, limited to the reach of the strongest control."""
+        """Set the aims of the finger, limited to the reach of the strongest control.
+
+        Also set the limits of controls: none may move the finger's skin away from its aims.
+        """
         drawn = self.targets - self._from[self._vertices]
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
-        room = np.where(along > 0.0, self._high, self._low) - self._start
+        lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._first])
+        # Cosine between two motions, from which on they count as motions in one direction.
+        least_cosine = 0.5
+        least = least_cosine * lengths * np.sqrt(self._square(drawn))
+        low, high = self._limits
+        self._low = np.where(along > least, self._start, low)
+        self._high = np.where(along < -least, self._start, high)
+        room = np.where(along > 0.0, high, low) - self._start
         reach = float((along * room).max())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
@@ -273,7 +284,7 @@ class Pull:
         return _Lasso(
             under @ under.T + others @ slope.T + effort * np.eye(count),
             under @ off + others @ (self._from - now).ravel() - effort * changed,
-            0.5 * price * self._drawn / np.maximum(self._high, -self._low),
+            0.5 * price * self._drawn / np.abs(self._limits).max(axis=0),
             changed, self._low - self._start, self._high - self._start,
         )  # fmt: skip
 

@@ -16,13 +16,15 @@ SIGHT = np.array([0.0, 0.0, -1.0])  # from the front
         ((43, 44), 3.0, "levator_palpebrae", "palpebral_lower"),
         ((57,), -8.0, "lower", "upper"),
         ((51,), 5.0, "levator_labii_superioris", "roll_lower"),
+        ((8,), -15.0, "jaw_open", "jaw_forward"),
     ],
 )
-def test_a_finger_pulls_one_lip_or_lid(session, landmarks, up, wanted, unwanted):
-    """The lip or lid beyond the opening is not under the finger.
+def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwanted):
+    """The lip or lid beyond an opening stays, and no control works against the finger.
 
     The finger pulled skin within 16 mm through the air. So an upper lid that was pulled up tensed
-    the lower one, and a lower lip that was pulled down rolled in the upper one.
+    the lower one, and a lower lip that was pulled down rolled in the upper one. A chin
+    that was pulled down also thrust the jaw forward, which lifts the chin.
     """
     scene = session.scene
     place = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)
