@@ -77,12 +77,18 @@ class Anatomy:
         }
 
     def muscle_at(self, point: npt.ArrayLike, reach: float) -> str | None:
-        """The muscle whose fibres come nearest to a point (3,) of the skin, within `reach`."""
+        """The muscle whose fibres come nearest to a point (3,) of the skin, within `reach`.
+
+        Muscles of the other side do not count, because sphincters of both sides lie in both lips.
+        """
         at = np.asarray(point, np.float64)[None]
+        (skin,) = self._in_head({"skin": [self._state.x]})["skin"]
+        touched = np.square(skin - at).sum(axis=1).argmin()
+        other_side = "_right" if self._model.skin.rest[touched, 0] > 0.0 else "_left"
         nearest = {  # the first point is repeated: a fibre may be a single point
             name: min(float(polyline_distance(at, np.vstack([x, x[-1:]]))[0]) for x in lines)
             for name, lines in self.courses().items()
-            if lines
+            if lines and not name.endswith(other_side)
         }
         name = min(nearest, key=lambda each: nearest[each], default="")
         return name if nearest.get(name, np.inf) <= reach else None

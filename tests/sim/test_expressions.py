@@ -405,6 +405,17 @@ def test_sphincters_are_drawn_without_corners(simulation):
         assert corners.sum() <= 1, name
 
 
+@pytest.mark.parametrize(("corner", "side"), [(48, "_right"), (54, "_left")])
+def test_a_corner_of_the_mouth_shows_a_muscle_of_its_side(simulation, head, corner, side):
+    """Rings of the other side also pass there, also where the head is turned."""
+    for yaw in (0.0, 1.0):
+        simulation.controls.set("head_yaw", yaw)
+        for _ in range(30):
+            simulation.step(FRAME)
+        place = simulation.positions[head.landmarks[corner]]
+        assert simulation.anatomy.muscle_at(place, 14.0).endswith(side)
+
+
 def test_courses_follow_the_lips_apart(simulation):
     """Over an open jaw, muscles of the lower lip go down with it, those of the upper stay."""
     relaxed = simulation.anatomy.courses()
