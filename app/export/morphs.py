@@ -36,14 +36,13 @@ class Morphs:
     error: float
 
 
-def decompose(moved: Floats64) -> Morphs:
+def decompose(moved: Floats64, most: int = 198) -> Morphs:
     """Return few targets with an error of at most TOLERANCE.
 
-    moved: displacements of each vertex from rest in each frame [mm], shape (N, V, 3). If 198
+    moved: displacements of each vertex from rest in each frame [mm], shape (N, V, 3). If `most`
     targets do not suffice, the error is larger. Some readers count targets in a byte, and the 52
     named targets also count.
     """
-    most = 198
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     # Components below this share of the largest component are rounding errors.
     rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), NOTHING)).sum())
