@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
-STARTING = 60.0  # [s] a separate process may have to compile first
+STARTING = 120.0  # [s] a separate process may have to compile first
 # A changed variable (None: removed), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
 IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
