@@ -13,6 +13,7 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,39 @@ def content_of(uri: str, folder: Path, kind: str) -> bytes:
         raise AssetError(f"its {kind} {named(name)}: {error}") from None
 
 
+class Buffers:
+    """The buffers of a glTF file: its binary data, data in its text, and other files."""
+
+    def __init__(self, uris: Sequence[str | None], data: bytes | None, folder: Path) -> None:
+        """uris: of each buffer. data: binary data of a GLB file. folder: that of the file."""
+        self._uris = uris
+        self._data = data
+        self._folder = folder
+        self._known: dict[int, bytes] = {}
+
+    def has(self, number: int) -> bool:
+        """Whether the file has a buffer: placeholders for decompressed data have none."""
+        return self._uris[number] is not None or (number == 0 and self._data is not None)
+
+    def part(self, number: int, start: int, length: int) -> memoryview:
+        """Return bytes of a buffer; ValueError if it ends before, AssetError if it is missing."""
+        data = self._bytes(number)
+        if start < 0 or start + length > len(data):
+            raise ValueError(f"buffer {number} ends before its data do")
+        return memoryview(data)[start : start + length]
+
+    def _bytes(self, number: int) -> bytes:
+        """The bytes of a buffer."""
+        uri = self._uris[number]
+        if uri is not None:
+            if number not in self._known:
+                self._known[number] = content_of(uri, self._folder, "buffer")
+            return self._known[number]
+        if number == 0 and self._data is not None:
+            return self._data
+        raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
+
+
 def _chunks_of(content: bytes) -> tuple[bytes, bytes | None]:
     """The document of a glTF or GLB file and its binary data, None if it has none."""
     if not content.startswith(b"glTF"):  # the first bytes of a GLB file
@@ -85,9 +119,8 @@ class _Decompression:
 
     def __init__(self, document: dict[str, Any], data: bytes | None, folder: Path) -> None:
         self._document = document
-        self._data = data
-        self._folder = folder
-        self._buffers: dict[int, bytes] = {}
+        uris = [buffer.get("uri") for buffer in document.get("buffers", [])]
+        self._buffers = Buffers(uris, data, folder)
         self._plain = bytearray()
 
     def result(self) -> tuple[bytes, bytes]:
@@ -117,7 +150,7 @@ class _Decompression:
         if name is None:
             return self._stored(view)
         packed = view["extensions"].pop(name)
-        if self._has_data(view["buffer"]):
+        if self._buffers.has(view["buffer"]):
             return self._stored(view)
         decoder = _package("meshopt", name)
         count, stride = packed["count"], packed["byteStride"]
@@ -133,6 +166,11 @@ class _Decompression:
             self._stored(packed), count, stride, packed["mode"], packed.get("filter")
         )
         return decoded.tobytes()
+
+    def _stored(self, view: dict[str, Any]) -> bytes:
+        """The bytes to which a buffer view, or its compression, refers."""
+        start = view.get("byteOffset", 0)
+        return bytes(self._buffers.part(view["buffer"], start, view["byteLength"]))
 
     def _decompress(self, primitive: dict[str, Any]) -> None:
         """Decompress a primitive that Draco compresses, unless it has uncompressed data, too."""
@@ -180,31 +218,6 @@ class _Decompression:
         views.append(view)
         accessor.pop("byteOffset", None)
         accessor.update(bufferView=len(views) - 1, count=len(rows))
-
-    def _stored(self, view: dict[str, Any]) -> bytes:
-        """The bytes to which a buffer view, or its compression, refers."""
-        start = view.get("byteOffset", 0)
-        data = self._buffer(view["buffer"])
-        if start < 0 or start + view["byteLength"] > len(data):
-            raise ValueError(f"buffer {view['buffer']} ends before its data do")
-        return data[start : start + view["byteLength"]]
-
-    def _has_data(self, number: int) -> bool:
-        """Whether the file has a buffer: placeholders for decompressed data have none."""
-        is_own = number == 0 and self._data is not None
-        return is_own or "uri" in self._document["buffers"][number]
-
-    def _buffer(self, number: int) -> bytes:
-        """The bytes of a buffer."""
-        if number not in self._buffers:
-            uri = self._document["buffers"][number].get("uri")
-            if uri is not None:
-                self._buffers[number] = content_of(uri, self._folder, "buffer")
-            elif number == 0 and self._data is not None:
-                self._buffers[number] = self._data
-            else:
-                raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
-        return self._buffers[number]
 
 
 def _package(module: str, extension: str) -> Any:

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .errors import AssetError
-from .gltf_content import COMPONENTS, content_of, plain_chunks
+from .gltf_content import COMPONENTS, Buffers, content_of, plain_chunks
 from .user_files import MOST_VERTICES, named
 
 
@@ -37,14 +37,14 @@ class GltfFile:
         """
         import pygltflib  # imported late, so that loading the built-in head is fast
 
-        text, self._data = plain_chunks(content, folder)
+        text, data = plain_chunks(content, folder)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # pygltflib would print them
             self.document = pygltflib.GLTF2.from_json(
                 text.decode("utf-8-sig"), infer_missing=True, object_hook=_tidied
             )
         self._folder = folder
-        self._buffers: dict[int, bytes] = {}
+        self._buffers = Buffers([each.uri for each in self.document.buffers or []], data, folder)
         version = str(self.document.asset.version)
         if not version.startswith("2."):
             raise AssetError(f"is glTF {named(version)}; export it as glTF 2.0")
@@ -118,23 +118,7 @@ class GltfFile:
     def _view(self, number: int) -> memoryview:
         """A part of a buffer."""
         view = self.document.bufferViews[number]
-        start = view.byteOffset or 0
-        data = self._buffer(view.buffer)
-        if start < 0 or start + view.byteLength > len(data):
-            raise ValueError(f"buffer {view.buffer} ends before its data do")
-        return memoryview(data)[start : start + view.byteLength]
-
-    def _buffer(self, number: int) -> bytes:
-        """The bytes of a buffer."""
-        if number not in self._buffers:
-            uri = self.document.buffers[number].uri
-            if uri is not None:
-                self._buffers[number] = content_of(uri, self._folder, "buffer")
-            elif number == 0 and self._data is not None:
-                self._buffers[number] = self._data
-            else:
-                raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
-        return self._buffers[number]
+        return self._buffers.part(view.buffer, view.byteOffset or 0, view.byteLength)
 
 
 def entry(part: Any, name: str) -> Any:
