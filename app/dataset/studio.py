@@ -42,7 +42,7 @@ from .sampling import Sample, SampleCamera, chosen, draw
 from .surroundings import laid_over, light_of
 from .table import BARE
 
-SETTLING = 0.5  # [s] after which skin is within 0.001 mm of its place in a pose; films take longer
+SHOT_SETTLING = 0.5  # [s] until skin is within 0.001 mm of its place; films take longer
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     """Move a face into its pose, place the camera, and turn the eyes; return the camera."""
     scene.reset()
     scene.pose(sample.controls)
-    scene.step(SETTLING)
+    scene.step(SHOT_SETTLING)
     camera = _camera_of(scene, sample.view, size)
     if sample.gaze is None:
         eyes = looking_at(scene.face, camera.eye)["eyes"]
@@ -190,7 +190,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
         aside, up = (round(degrees / GAZE, 4) for degrees in sample.gaze)
         eyes = {"gaze_horizontal": aside, "gaze_vertical": up}
     scene.pose({**sample.controls, **eyes})
-    scene.step(SETTLING)
+    scene.step(SHOT_SETTLING)
     return camera
 
 
