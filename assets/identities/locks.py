@@ -16,7 +16,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ..model import Part
-from ..smooth import Points
+from ..smooth import Points, smooth_step
 
 MEAN = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATIONS = 3  # points along a lock: root, middle and tip
@@ -97,9 +97,9 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     chances = _chances(growth.count)
     faces, barycentric = _places(hair, growth.fringe, chances[:, :3])
     corners = hair.faces[faces]
-    columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 2:6], hair.colours])
+    columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 1:6], hair.colours])
     at = sum(barycentric[:, k, None] * columns[corners[:, k]] for k in range(3))
-    root, normal, way, dense, colour = np.split(at, [3, 6, 9, 10], axis=1)
+    root, normal, away, way, dense, colour = np.split(at, [3, 6, 7, 10, 11], axis=1)
     normal = unit_vectors(normal)
     long = np.sqrt(_dot(way, way))
     ahead = way / np.maximum(long, 1e-6)
@@ -112,7 +112,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     risen = alone[:, 1:2] * (1.0 - growth.lying * (1.0 - 6.0 * alone[:, 1:2] ** 4))
     rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 0.6, 2.0) + risen)
     # Around a whorl, where layers stand up, locks lie in all directions.
-    upright = np.clip(_dot(ahead, normal) - 0.6, 0.0, 0.4)
+    upright = _upright(_dot(ahead, normal), away)
     stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
     ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
     reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
@@ -150,6 +150,15 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     )
 
 
+def _upright(rise: Floats64, away: Floats64) -> Floats64:
+    """Return how far layers stand up around a whorl, 0 to 0.4.
+
+    Layers also stand up in the hollow of the nape, where upright locks would look like thorns.
+    rise: sine of the angle between strands and skin. away: distance from the whorl [mm].
+    """
+    return np.asarray(np.clip(rise - 0.6, 0.0, 0.4) * smooth_step(45.0, 30.0, away))
+
+
 def _dot(first: Floats64, second: Floats64) -> Floats64:
     """Return dot products of vectors, (..., 3) -> (..., 1)."""
     return np.asarray(np.einsum("...i,...i->...", first, second)[..., None])
@@ -171,7 +180,8 @@ def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, F
     dense = hair.striation[:, 5][hair.faces].mean(axis=1)
     way = hair.striation[:, 2:5]
     lengths = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
-    upright = np.clip((way * hair.normals).sum(axis=1) / lengths - 0.6, 0.0, 0.4)[hair.faces[:, 0]]
+    rise = (way * hair.normals).sum(axis=1) / lengths
+    upright = _upright(rise, hair.striation[:, 1].astype(np.float64))[hair.faces[:, 0]]
     # Locks are denser at the hem, and sparse in front of it. They are densest at a whorl, where
     # layers show no strands.
     weights = area * np.clip(0.2 + 5.0 * dense, 0.0, 1.0) * (1.0 + fringe * (dense < 0.7))

@@ -87,6 +87,23 @@ def test_a_whorl_is_no_flat_disc(name):
     assert np.std(detail) > 1.5
 
 
+@pytest.mark.parametrize("name", ["head", 40, 19])
+def test_locks_of_the_nape_lie_side_by_side(name):
+    """Locks of the nape agree with their neighbours; they crossed like thorns, as at the whorl.
+
+    The agreement is the length of the mean of nine neighbouring unit directions.
+    """
+    parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
+    locks = next(part for part in parts if part.name == "hair_locks")
+    roots = locks.vertices[::CORNERS]
+    directions = locks.striation[::CORNERS, :3]
+    neighbours = cKDTree(roots).query(roots, k=9)[1]
+    agreement = np.linalg.norm(directions[neighbours].mean(axis=1), axis=1)
+    is_low = roots[:, 1] < np.percentile(roots[:, 1], 25.0)
+    is_behind = roots[:, 2] < np.median(roots[:, 2])
+    assert np.percentile(agreement[is_low & is_behind], 5.0) > 0.93
+
+
 @pytest.mark.parametrize(("name", "least"), [(3, 300), (8, 300), (11, 60), (66, 60)])
 def test_tied_hair_is_seen_from_the_front(name, least):
     """A tail or a knot is seen beside or above the head; only a cap of hair was.
