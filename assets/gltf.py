@@ -31,9 +31,9 @@ class GltfSurface:
     """The surface in a glTF file.
 
     vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
-    same: for each vertex, the doubled vertex that `faces` use for it, shape (V,). corners: the same
-    triangles with the vertex indices of the file, shape (F, 3). texture: pictures and their places;
-    None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8, or None.
+    same: for each vertex, the coinciding vertex that `faces` use instead, shape (V,). corners: the
+    same triangles with the vertex indices of the file, shape (F, 3). texture: pictures and their
+    places; None without pictures. colours: vertex colours, sRGB, shape (V, 3), uint8, or None.
     has_colour: flags of vertices with a colour, shape (V,).
     """
 
@@ -249,8 +249,8 @@ class _Reader:
         skin: int,
         mixture: np.random.Generator,
     ) -> tuple[Floats64, Floats64, Floats64]:
-        """Points (V, 3) moved by bones, a mixture of the bones of each, shape (V,), and their turns
-        and scales, (V, 3, 3).
+        """Return points moved by bones, (V, 3), a fingerprint of each point's bones, (V,), and
+        the linear parts of the motions, (V, 3, 3).
 
         unbent: points moved by the node's matrix `world` alone, for points without a bone.
         """

@@ -73,7 +73,7 @@ class Buffers:
         self._known: dict[int, bytes] = {}
 
     def has(self, number: int) -> bool:
-        """Whether the file has a buffer: placeholders for decompressed data have none."""
+        """Whether the file has a buffer's data; placeholders for decompressed data have none."""
         return self._uris[number] is not None or (number == 0 and self._data is not None)
 
     def part(self, number: int, start: int, length: int) -> memoryview:

@@ -119,8 +119,8 @@ def _placed(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
 
 
 def _within_picture(values: Floats64, way: int | None) -> Floats64:
-    """Coordinates along one axis of a picture, wrapped beyond its edge in a `way`."""
-    clamped = 33071  # numbers of ways to continue a picture beyond its edge
+    """Wrap coordinates along one axis of a picture; way: glTF's number of a wrapping mode."""
+    clamped = 33071  # glTF's numbers of wrapping modes
     if way == clamped:
         return values.clip(0.0, 1.0)
     mirrored = 33648

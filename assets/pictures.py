@@ -89,7 +89,7 @@ def _picture_of(
 
 
 def material_key(material: str, known: Container[str]) -> str:
-    """The name under which a material is known; a remark may follow a name."""
+    """The name of a known material; in some files a remark follows the name."""
     return material if material in known else material.rpartition(" #")[0].rstrip()
 
 

@@ -115,7 +115,7 @@ class _Numbers:
         self.place = 0
 
     def take(self, kind: str, count: int) -> npt.NDArray[Any]:
-        """This many numbers of a kind."""
+        """Read the next `count` numbers of a kind."""
         found = self._numbers[self.place : self.place + count]
         if not 0 <= count == len(found):
             raise ValueError("the file ends too early")
@@ -123,7 +123,7 @@ class _Numbers:
         return found.astype(kind)
 
     def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
-        """This many rows of numbers of some kinds, column by column."""
+        """Read the next `count` rows of numbers of some kinds; return them by columns."""
         columns = self.take("f8", len(kinds) * count).reshape(count, len(kinds)).T
         return [column.astype(kind) for column, kind in zip(columns, kinds, strict=True)]
 
@@ -137,11 +137,11 @@ class _Bytes:
         self.place = 0
 
     def take(self, kind: str, count: int) -> npt.NDArray[Any]:
-        """This many numbers of a kind."""
+        """Read the next `count` numbers of a kind."""
         return self._rows(np.dtype(self._order + kind), count)
 
     def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
-        """This many rows of numbers of some kinds, column by column."""
+        """Read the next `count` rows of numbers of some kinds; return them by columns."""
         rows = np.dtype([(str(place), self._order + kind) for place, kind in enumerate(kinds)])
         found = self._rows(rows, count)
         return [found[name] for name in rows.names or ()]

@@ -254,7 +254,7 @@ def _picture_of(rest: str) -> MaterialPicture:
 
 
 def _along_u_and_v(values: list[str], default: float) -> tuple[float, float]:
-    """The first two of some numbers."""
+    """Read the two numbers of an option; `default` replaces a missing number."""
     u = float(values[0]) if values else default
     v = float(values[1]) if len(values) > 1 else default
     return u, v
@@ -277,7 +277,7 @@ def _parted(line: str) -> tuple[str, str]:
 
 
 def joined_lines(content: bytes) -> bytes:
-    """Text of `text_with_names`, with each line that ends in a backslash joined to the next.
+    """Join each line that ends in a backslash to the next line; text: see `text_with_names`.
 
     Comment lines are never joined, because a path in a comment may end in a backslash.
     """

@@ -12,10 +12,10 @@ It joins like any plug-in, by an entry point of the group `risorius.refiners`, a
 `risorius.refine`, numpy and moderngl. It needs OpenGL 4.3 or newer, which may be a software driver.
 Without it, one warning is logged, and the refiner `kahler` computes the same on the processor.
 
-    tables.py     arrays that are handed over once per mesh
+    tables.py     arrays that are uploaded once per mesh
     shaders/      the passes; common.glsl is part of each
     frames.py     buffers, programs, and the order of the passes
-    context.py    OpenGL where no caller brings any
+    context.py    OpenGL for callers without a context
     refined.py    the mesh of a frame
     refiner.py    the refiner
 

@@ -43,7 +43,7 @@ class OwnContext:
 
 
 def _open() -> moderngl.Context:
-    """By EGL on Linux, or else by X11; elsewhere the native way."""
+    """Open a context: by EGL on Linux, or else by X11; on other systems by their own interface."""
     natively: dict[str, Any] = {"require": LEAST_VERSION, "standalone": True}
     try:
         how: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}

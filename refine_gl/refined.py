@@ -44,7 +44,7 @@ class GpuMesh:
     def __init__(
         self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats32], Columns]
     ) -> None:
-        """`columns`: number in a row; `parted`: cuts texture coordinates and attributes out."""
+        """`columns`: length of a row; `parted`: returns the texture coordinates and attributes."""
         self._stream = stream
         self._run = run
         self._columns = columns

@@ -143,7 +143,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
 
     @property
     def splits(self) -> Unsigned8:
-        """How often each edge was split in the last frame, shape (E,), read only; fetched."""
+        """How often each edge was split in the last frame, shape (E,), fetched from the card."""
         if self._fetched_splits is None:
             assert self._frames is not None
             numbers = self._run(self._frames.fetch, "splits", len(self.edges))
@@ -158,7 +158,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         return 0 if frames is None else int(self._run(frames.fetch, "removals", 1)[0])
 
     def origins(self) -> Origins:
-        """Return the place on the input mesh of every vertex of the last frame; fetched."""
+        """Return the place on the input mesh of each vertex of the last frame, from the card."""
         mesh = self.connectivity
         splits = self.splits
         ends = mesh.edges[mesh.attribute_edges]

@@ -255,7 +255,7 @@ def _import_glfw() -> ModuleType:
 
 @contextlib.contextmanager
 def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
-    """Collect error reports of GLFW, which else become Python warnings."""
+    """Collect error reports of GLFW, which would otherwise become Python warnings."""
     texts: list[str] = []
 
     def note(code: int, text: bytes | str) -> None:

@@ -55,8 +55,9 @@ class LipPairs(NamedTuple):
         return apart
 
     def deepest(self, x: Floats64, rest: Floats64, pressed: float) -> float:
-        """Greatest depth of crossing lips [mm] at positions (V, 3), beyond `pressed` and `rest`.
+        """Return the greatest depth of one lip in the other [mm], for vertices `x` (V, 3).
 
+        rest: vertices at rest, (V, 3). pressed: depth that is subtracted, because lips are pressed.
         A lower lip in front of the upper lip, or rolled in behind it (substep.py), does not count.
         """
         forward = self.apart(x - rest)[:, 2]

@@ -209,15 +209,15 @@ class _Reader:
         self._check_entries(where, row, below)
 
     def _check_entries(self, where: str, row: _Row, below: Mapping[str, Floats64]) -> None:
-        """ValueError unless layers below have all controls, and a row may have these as entries."""
+        """Raise ValueError if a layer below lacks a control of a row, or it has `share_of`."""
         for control in (*row.entries, *row.at_least):
             if control not in below:
                 guess = question(control, below)
                 raise ValueError(f"{where}: no layer below has a control called '{control}'{guess}")
             if control in self.share_of:
                 raise ValueError(
-                    f"{where}, '{control}': is a fraction of '{self.share_of[control]}', which "
-                    "only a value that is set can be; name the controls that it moves instead"
+                    f"{where}, '{control}': is a fraction of '{self.share_of[control]}', and "
+                    "no row may refer to it; name the controls that it moves instead"
                 )
 
     def _sums(

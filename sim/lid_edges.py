@@ -1,4 +1,4 @@
-"""The front edges of eyelids, and the measures of each lid by distance from its edge.
+"""Find the front edges of the eyelids, and measure each lid by the distance from its edge.
 
 Source: own.
 """
@@ -94,7 +94,7 @@ def one_lid(
     on_lid: Flags,
     fold_ends: tuple[float, float],
 ) -> OneLid:
-    """Measure one lid along its front edge. fold_ends: mm, plateau and reach."""
+    """Measure one lid along its front edge; fold_ends: plateau and reach of `_falloff` [mm]."""
     edge = surface.positions[edge_vertices]
     distance = polyline_distance(surface.positions, edge)
     column = axes.column(surface.positions)

@@ -237,7 +237,7 @@ Part = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the
 
 
 def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64) -> list[Part]:
-    """Return how skin hangs on each line that pulls, including the gain; places in samples."""
+    """Return the attachments of skin to each line that pulls, with gain; arcs are in samples."""
     return [
         (
             placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
@@ -251,9 +251,9 @@ def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Float
 def _carries(
     placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64, stack: Stack
 ) -> list[Part]:
-    """Return how skin hangs on each line that lies on others; places in points.
+    """Return the attachments of skin to each line that lies on others; arcs are in points.
 
-    A vertex is carried by the line of the muscle that holds it most.
+    The line of the muscle that holds a vertex most carries this vertex.
     """
     line_count = len(stack.rows) - 1
     lies = np.zeros((line_count, FIBRE_POINTS), dtype=np.bool_)

@@ -256,12 +256,12 @@ def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
             )
     muscles = {name: replace(muscle, name=name) for name, muscle in tables.items()}
     for muscle in muscles.values():
-        _check_what_carries(muscle, muscles)
+        _check_carriers(muscle, muscles)
     return tuple(muscles.values())
 
 
-def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
-    """Refuse a muscle that lies on a missing one, a lid, or through others on itself."""
+def _check_carriers(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
+    """Refuse a muscle on a missing muscle, on a lid, or (through other muscles) on itself."""
     where = f"'{muscle.name}', 'lies_on'"
     if muscle.lies_on and isinstance(muscle, LidMuscle):
         raise ValueError(f"{where}: a lid lies on the eyeball; omit the key")

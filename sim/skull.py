@@ -234,7 +234,7 @@ def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -
 
 
 def eyeballs_from_landmarks(landmarks: Floats64) -> tuple[Eyeball, ...]:
-    """Eyeballs guessed from the eye corners, for a head without its own, landmarks (68, 3) [mm]."""
+    """Guess the eyeballs of a head without eyeballs; landmarks: points [mm], (68, 3)."""
     eyeballs = []
     eye_radius = 12.5  # mm in the standard space, for a head without eyes (adult eyeball: 12)
     eye_setback = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)

@@ -1,4 +1,4 @@
-"""The turn of the head in JSON with shapes: named angles, quaternions and matrices.
+"""Read the head's rotation in JSON files of shapes: named angles, quaternions, matrices.
 
 Three numbers without names are not read, because programs disagree about their order. Axes of
 quaternions and matrices are MediaPipe's: x to the subject's left, y up, z ahead.

@@ -160,7 +160,7 @@ def of_percent(
 def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
     """Return the rows of zeros, if they mean that no face was found; else none.
 
-    They do if three shapes of NEVER_AT_REST are never near 0 in the other rows.
+    Such rows mean this if three shapes of NEVER_AT_REST are never near 0 in the other rows.
     """
     if not shapes:
         return np.zeros(0, dtype=bool)

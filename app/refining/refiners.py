@@ -76,7 +76,7 @@ def refiner_for(
 
 
 def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
-    """Return a hint on options that come from the preset, which a user may not know."""
+    """Return a hint on options that the preset sets, because a user may not know them."""
     settings = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()

@@ -48,14 +48,14 @@ class FilePiece:
     number: number of the piece in options.
     vertices: vertex indices in the file, (n,).
     role: one of ROLES.
-    middle: centre of the bounding box [mm], (3,).
+    centre: centre of the bounding box [mm], (3,).
     name: name of the object or group in the file, or "".
     """
 
     number: int
     vertices: npt.NDArray[np.integer]
     role: str
-    middle: Floats64
+    centre: Floats64
     name: str = ""
 
 
@@ -89,26 +89,26 @@ def find_pieces(
     found = []
     for number, group in enumerate(groups, start=1):
         points = rest[group]
-        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        role = _role_of(points, middle, head, near)
-        found.append(FilePiece(number, group, role, middle, names[group[0]]))
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        role = _role_of(points, centre, head, near)
+        found.append(FilePiece(number, group, role, centre, names[group[0]]))
     return _in_rows(found, rest)
 
 
 def _role_of(
-    points: Floats64, middle: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
+    points: Floats64, centre: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
 ) -> str:
     """Return the role of a piece; points: vertices of the piece [mm], (n, 3)."""
     for eye in head.eyes:
         if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
-    role = _role_in_mouth(points, middle, head)
+    role = _role_in_mouth(points, centre, head)
     if role is not None:
         return role
     landmarks = head.vertices[head.landmarks]
     distance = near.query(points)[0]
     if distance.min() < 4.0 and (
-        _is_on_face(points, middle, distance, landmarks) or _is_beard(points, middle, landmarks)
+        _is_on_face(points, centre, distance, landmarks) or _is_beard(points, centre, landmarks)
     ):
         return "on_skin"
     # A collar reaches up to the chin; long hair hangs down from above the chin.
@@ -118,21 +118,21 @@ def _role_of(
 
 
 def _is_on_face(
-    points: Floats64, middle: Floats64, distance: Floats64, landmarks: Floats64
+    points: Floats64, centre: Floats64, distance: Floats64, landmarks: Floats64
 ) -> bool:
     """Whether a piece is a lash, a brow or similar.
 
     distance: distances of the points from the skin [mm], (n,). landmarks: [mm], (68, 3).
     """
     face = landmarks[FACE]
-    is_on_face = (middle > face.min(axis=0) - BESIDE) & (middle < face.max(axis=0) + BESIDE)
+    is_on_face = (centre > face.min(axis=0) - BESIDE) & (centre < face.max(axis=0) + BESIDE)
     # Glasses span both eyes and hang in front of them.
-    is_before = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
+    is_in_front = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
     # Lashes are shorter than 20 mm.
-    return bool(is_on_face.all() and distance.max() < 20.0 and not is_before)
+    return bool(is_on_face.all() and distance.max() < 20.0 and not is_in_front)
 
 
-def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
+def _is_beard(points: Floats64, centre: Floats64, landmarks: Floats64) -> bool:
     """Whether a piece lies around mouth or chin, below the eyes and in front of the ears."""
     low = points.min(axis=0)
     high = points.max(axis=0)
@@ -140,12 +140,12 @@ def _is_beard(points: Floats64, middle: Floats64, landmarks: Floats64) -> bool:
     is_low = low[1] < landmarks[LOWER_LIP, 1] and high[1] < landmarks[NOSE_BRIDGE, 1]
     below_chin = 15.0  # [mm] from the chin down to the top of a goatee; clothes begin lower
     is_low = is_low and high[1] > landmarks[CHIN, 1] - below_chin
-    is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and middle[2] > jaw_line[:, 2].mean()
-    is_amid = abs(middle[0] - landmarks[CHIN, 0]) < 15.0
-    return bool(is_low and is_ahead and is_amid)
+    is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and centre[2] > jaw_line[:, 2].mean()
+    is_central = abs(centre[0] - landmarks[CHIN, 0]) < 15.0
+    return bool(is_low and is_ahead and is_central)
 
 
-def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str | None:
+def _role_in_mouth(points: Floats64, centre: Floats64, head: FittedHead) -> str | None:
     """Return the role of a piece near the built-in teeth or tongue; None for other pieces."""
     parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
@@ -160,16 +160,16 @@ def _role_in_mouth(points: Floats64, middle: Floats64, head: FittedHead) -> str 
     between = 0.5 * (parts["teeth_upper"][:, 1].min() + parts["teeth_lower"][:, 1].max())
     width, height, depth = np.ptp(points, axis=0)
     # A row of teeth is hollow in its middle; a tongue and a palate are not.
-    is_middle = np.abs(points[:, 0] - middle[0]) < 0.15 * width
+    is_middle = np.abs(points[:, 0] - centre[0]) < 0.15 * width
     is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
     # Walls of a mouth enclose the gums. A tongue may be as high if it reaches into the throat.
     if width > 0.85 * np.ptp(around[:, 0]) and height > 35.0:
         return "mouth"
     if width > 20.0 and depth > 25.0 and is_filled:
         # A palate lies above the edges of the teeth, and the floor of a mouth below them.
-        if middle[1] < between < points[:, 1].max() + 5.0:
+        if centre[1] < between < points[:, 1].max() + 5.0:
             return "tongue"
-    return "upper_teeth" if middle[1] > between else "lower_teeth"
+    return "upper_teeth" if centre[1] > between else "lower_teeth"
 
 
 def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
@@ -187,7 +187,7 @@ def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
     fewest = 8
     if len(teeth) < fewest:
         return pieces
-    centres = np.array([pieces[place].middle for place in teeth])
+    centres = np.array([pieces[place].centre for place in teeth])
     is_upper = np.array([pieces[place].role == "upper_teeth" for place in teeth])
     most_passes = 10
     for _ in range(most_passes):
@@ -258,7 +258,7 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
         count = sum(len(piece.vertices) for piece in group)
         what = ROLES[group[0].role]
         if len(group) == 1:
-            x, y, z = group[0].middle
+            x, y, z = group[0].centre
             label = f"piece {group[0].number}"
             where = f" at {x:.0f} {y:.0f} {z:.0f} mm"
         else:

@@ -73,7 +73,7 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """Build the scene called `name`; raises UserError if it has no head, but `head` is given."""
+    """Build the scene called `name`; raises UserError if `head` is given for a headless scene."""
     if head is None:
         return SCENES[name]()
     if name != "face":

@@ -165,7 +165,7 @@ def _turned(start: Floats64, end: Floats64, fractions: Floats64) -> Floats64:
 
 
 def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Part, ...]:
-    """Make the parts that are drawn as tied hair, of a cut with a knot or a tail.
+    """Make the parts that are drawn as tied hair: a knot or a tail.
 
     colour: sRGB, (3,). length: factor on the lengths of the cut.
     """

@@ -53,7 +53,8 @@ def border_neighbours(mesh: Connectivity, rest_positions: Floats64) -> Unsigned3
 def follow_borders(mesh: Connectivity, rest_positions: Floats64) -> Unsigned32:
     """Find the vertices before and after every border edge, shape (E, 2).
 
-    At a corner of the border it is the end of the edge itself. Rows of other edges have no meaning.
+    At a corner of the border, this vertex is the edge's own end. Rows of other edges have no
+    meaning.
     """
     neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
     others = mesh.edges[:, ::-1].view(np.uint32)
@@ -79,7 +80,7 @@ def follow_outlines(
 
 
 def edges_of_outlines(mesh: Connectivity, outlines: Sequence[Sequence[int]]) -> Flags:
-    """Edges between the second and the last but one vertex of each outline, shape (E,)."""
+    """Flag the edges of each outline, except its first and its last edge, shape (E,)."""
     inner = [edge for rim in outlines for edge in pairwise(rim[1:-1])]
     if not inner:
         return np.zeros(len(mesh.edges), np.bool_)

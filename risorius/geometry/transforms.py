@@ -19,8 +19,9 @@ def moved_points(matrix: npt.NDArray[Any], points: npt.NDArray[Any]) -> Floats64
 def angles_of(rotation: npt.NDArray[Any]) -> tuple[float, float, float]:
     """Return yaw, pitch and roll [degrees] of a rotation (3, 3), of any uniform scale.
 
-    They grow to the left, up, and to the left shoulder, of a head whose axes are left, up and
-    ahead. The head rolls first, and turns last, as `sim.skull.turn_head` does.
+    The rotation is that of a head with the axes left, up and ahead. Angles grow as it turns to its
+    left, up, and to its left shoulder. Roll is applied first and yaw last, as in
+    `sim.skull.turn_head`.
     """
     length = float(np.linalg.norm(rotation[:, 2])) or 1.0
     yaw = math.atan2(rotation[0, 2], rotation[2, 2])

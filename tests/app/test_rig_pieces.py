@@ -170,16 +170,16 @@ def test_lines_have_the_names_of_the_file(face):
     (piece,) = pieces_with(face, Maker(face).part("tongue"), "Tongue")
     (line,) = described([piece])
     assert line.startswith("piece 1 (Tongue): ") and line.endswith("tongue, bends")
-    middle = np.zeros(3)
-    strands = [FilePiece(n, np.arange(4), "hair", middle, f"strand{n}") for n in range(1, 6)]
+    centre = np.zeros(3)
+    strands = [FilePiece(n, np.arange(4), "hair", centre, f"strand{n}") for n in range(1, 6)]
     assert described(strands)[0].startswith("pieces 1-5 (strand1, strand2, 3 more): 20 vertices")
-    assert described([FilePiece(1, np.arange(4), "hair", middle)])[0].startswith("piece 1: ")
+    assert described([FilePiece(1, np.arange(4), "hair", centre)])[0].startswith("piece 1: ")
 
 
 def test_an_option_names_pieces_by_number_or_name():
     """A name selects all pieces with it; an unknown name or number is refused in one line."""
-    middle = np.zeros(3)
-    pieces = [FilePiece(n, np.arange(4), "hair", middle, name) for n, name in enumerate("abba", 1)]
+    centre = np.zeros(3)
+    pieces = [FilePiece(n, np.arange(4), "hair", centre, name) for n, name in enumerate("abba", 1)]
     roles = [piece.role for piece in corrected(pieces, ["a=on_skin", "2-3=body", "3=tongue"])]
     assert roles == ["on_skin", "body", "tongue", "on_skin"]
     for wrong, words in (("5=hair", "1 to 4"), ("c=hair", "none of this name"), ("a=hat", "roles")):

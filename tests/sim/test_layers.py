@@ -191,7 +191,7 @@ def test_a_row_cannot_use_a_fraction():
 
     A fraction depends on set values, which a row in a higher layer does not have.
     """
-    with pytest.raises(ValueError, match=r"'above', 'part': is a fraction of 'whole', which"):
+    with pytest.raises(ValueError, match=r"'above', 'part': is a fraction of 'whole', and"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 
