@@ -18,7 +18,7 @@ from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
 from . import DECIMALS, LARGEST, Channel, Key, Pose, Script, rounded
 from .easings import easing_named
-from .places import Places, among
+from .key_sets import KeySet, is_any_of
 
 POSES = ""  # the track of whole poses; any other track has its control's name
 FRAME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
@@ -27,13 +27,13 @@ SAME = 1e-6  # values, or times [s], that differ by less are equal
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
 Values = Mapping[str, float]
-Placed = tuple[Script, Places]  # a script, and places of some of its keys
+ScriptAndKeys = tuple[Script, KeySet]  # a script, and some of its keys
 
 
-def places_of(script: Script) -> Places:
+def all_keys(script: Script) -> KeySet:
     """Return the tracks and times of all keys of a script, the poses first."""
     poses = {POSES: np.array([pose.time for pose in script.poses])}
-    return Places(poses | {name: track.times for name, track in script.tracks.items()})
+    return KeySet(poses | {name: track.times for name, track in script.tracks.items()})
 
 
 def on_frame(time: float) -> float:
@@ -43,13 +43,13 @@ def on_frame(time: float) -> float:
 
 def key_time(script: Script, time: float) -> float:
     """Return the time of a key within half a frame [s], or else of the nearest frame."""
-    near = places_of(script).near(time, 0.5 * FRAME)
+    near = all_keys(script).nearest(time, 0.5 * FRAME)
     return near.first if near else on_frame(time)
 
 
 def time_beyond(script: Script, time: float, direction: int) -> float:
     """Return the next key time [s], or the previous one for direction -1; else `time`."""
-    all_times = places_of(script).times.values()
+    all_times = all_keys(script).times.values()
     if direction > 0:
         later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)
         return float(min(np.concatenate([*later, []]), default=time))
@@ -65,33 +65,35 @@ def pose_at(script: Script, time: float) -> Pose | None:
 # Changes
 
 
-def moved(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
-    """Move keys later by `seconds`, none before 0; return the script and the new places.
+def moved(
+    script: Script, chosen: KeySet, seconds: float, source: Script | None = None
+) -> ScriptAndKeys:
+    """Move keys later by `seconds`, none before 0; return the script and the keys there.
 
     source: the script whose keys are copied; None: the keys are moved.
     """
-    shift = max(seconds, -places.first) if places else 0.0
+    shift = max(seconds, -chosen.first) if chosen else 0.0
     changed = {}
     arrived = {}
-    before = _columns(script, places)
-    for name, columns in _columns(source or script, places).items():
-        is_chosen = among(columns[0], places.times[name])
+    before = _columns(script, chosen)
+    for name, columns in _columns(source or script, chosen).items():
+        is_chosen = is_any_of(columns[0], chosen.times[name])
         times, *rest = _picked(columns, is_chosen)
         arrived[name] = np.round(times + shift, DECIMALS)
         nothing = _picked(columns, np.arange(0))
         there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
-    return _reaching(_with(script, changed), *ends), Places(arrived)
+    return _reaching(_with(script, changed), *ends), KeySet(arrived)
 
 
-def without(script: Script, places: Places) -> Script:
+def without(script: Script, chosen: KeySet) -> Script:
     """Delete keys; raise UserError if no key would be left."""
-    columns = _columns(script, places)
+    columns = _columns(script, chosen)
     left = _with(
         script,
         {
-            name: _picked(each, ~among(each[0], places.times[name]))
+            name: _picked(each, ~is_any_of(each[0], chosen.times[name]))
             for name, each in columns.items()
         },
     )
@@ -100,11 +102,11 @@ def without(script: Script, places: Places) -> Script:
     return left
 
 
-def eased(script: Script, places: Places, easing: str) -> Script:
+def eased(script: Script, chosen: KeySet, easing: str) -> Script:
     """Change the easing of keys."""
     changed = {}
-    for name, columns in _columns(script, places).items():
-        is_chosen = among(columns[0], places.times[name])
+    for name, columns in _columns(script, chosen).items():
+        is_chosen = is_any_of(columns[0], chosen.times[name])
         last = columns[-1].copy()  # the easings, or the poses, which hold their easings
         if name == POSES:
             last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
@@ -115,12 +117,12 @@ def eased(script: Script, places: Places, easing: str) -> Script:
 
 
 def raised(
-    script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
+    script: Script, chosen: KeySet, amount: float, limits: Limits, posed: Iterable[str]
 ) -> Script:
     """Raise the values of keys within limits; in poses, only the controls `posed` are raised."""
     poses = script.poses
     tracks = dict(script.tracks)
-    for name, times in places.times.items():
+    for name, times in chosen.times.items():
         if name == POSES:
             at = set(times.tolist())
             poses = tuple(p.raised(posed, amount, limits) if p.time in at else p for p in poses)
@@ -129,7 +131,7 @@ def raised(
             if name in script.posed_names:  # a track may then add up to the whole range
                 low, high = low - high, high - low
             track = tracks[name]
-            tracks[name] = track.raised(among(track.times, times), amount, low, high)
+            tracks[name] = track.raised(is_any_of(track.times, times), amount, low, high)
     return replace(script, poses=poses, tracks=tracks)
 
 
@@ -228,13 +230,13 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 # Construction
 
 
-def _columns(script: Script, places: Places) -> dict[str, Columns]:
-    """Return all keys of each track that has one of these places."""
-    columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
+def _columns(script: Script, chosen: KeySet) -> dict[str, Columns]:
+    """Return all keys of each track that has a chosen key."""
+    columns = {POSES: _pose_columns(script.poses)} if POSES in chosen.times else {}
     return columns | {
         name: _channel_columns(track)
         for name, track in script.tracks.items()
-        if name in places.times
+        if name in chosen.times
     }
 
 
@@ -255,7 +257,7 @@ def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
 
 def _joined(there: Columns, arriving: Columns) -> Columns:
     """Merge keys in the order of time; an arriving key replaces an old key at the same time."""
-    left = _picked(there, ~among(there[0], arriving[0], SAME))
+    left = _picked(there, ~is_any_of(there[0], arriving[0], SAME))
     if not len(left[0]):
         return arriving
     both = tuple(np.concatenate(pair) for pair in zip(left, arriving, strict=True))

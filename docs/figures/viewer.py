@@ -17,7 +17,7 @@ from risorius import assets
 from risorius.app.capture.drawing import camera_for
 from risorius.app.performances import script_for
 from risorius.app.pictures import Image
-from risorius.app.script.keyframes import places_of
+from risorius.app.script.keyframes import all_keys
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
 from risorius.assets.fitting.guess import FIRST
@@ -67,7 +67,7 @@ def timeline(viewer: Viewer) -> None:
     viewer.session.seek(2.3)
     viewer.frame()
     axis.zoom(0.6, axis.x(0.0))
-    viewer.face.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
+    viewer.face.selection.keys = all_keys(viewer.session.script).between(1.5, 3.0)
 
 
 def curves(viewer: Viewer) -> None:
@@ -76,7 +76,7 @@ def curves(viewer: Viewer) -> None:
     viewer.session.seek(3.7)
     viewer.frame()
     viewer.face.time_axis.zoom(0.5, viewer.face.time_axis.x(0.0))
-    viewer.face.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
+    viewer.face.selection.keys = all_keys(viewer.session.script).between(3.5, 4.0)
 
 
 def landmarks(viewer: Viewer) -> None:

@@ -11,7 +11,7 @@ import pytest
 from risorius.app import motion
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script.places import NOWHERE
+from risorius.app.script.key_sets import NO_KEYS
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
@@ -79,7 +79,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
     viewer.session.work.open(load_script(path))
-    viewer.face.selection.places = NOWHERE
+    viewer.face.selection.keys = NO_KEYS
     viewer.settings.shows_curves = False
     viewer.face.time_axis.show_whole()
     settle(viewer)

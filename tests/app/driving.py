@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script.places import KeyPlace
+from risorius.app.script.key_sets import KeyId
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.session import Session
@@ -192,16 +192,16 @@ def put(viewer: Viewer, *paths: Path) -> None:
     settle(viewer)
 
 
-def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
+def where_key(viewer: Viewer, key: KeyId) -> tuple[float, float]:
     """Place of a key in the first row that has keys [window units]."""
-    row = next(row for row in viewer.face.timeline.dope_sheet.rows if place in row.places)
+    row = next(row for row in viewer.face.timeline.dope_sheet.rows if key in row.keys)
     _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
-    return viewer.face.time_axis.x(place.time), 0.5 * (top + bottom)
+    return viewer.face.time_axis.x(key.time), 0.5 * (top + bottom)
 
 
-def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
+def key_at(viewer: Viewer, key: KeyId) -> tuple[int, int]:
     """Screen coordinates of such a key."""
-    return on_screen(viewer, *where_key(viewer, place))
+    return on_screen(viewer, *where_key(viewer, key))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:

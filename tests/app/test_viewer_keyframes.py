@@ -10,8 +10,8 @@ from risorius.app.control_names.limits import Limits
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.script import Script, keyframes
+from risorius.app.script.key_sets import KeyId, KeySet
 from risorius.app.script.keyframes import POSES
-from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script, parse_script
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.documents.scripts import Question, ScriptCommands
@@ -20,7 +20,7 @@ from risorius.app.viewer.timeline.keys import KeySelection
 
 from .driving import HELLO
 
-JOY = KeyPlace(POSES, 1.0)
+JOY = KeyId(POSES, 1.0)
 
 
 @pytest.fixture
@@ -136,10 +136,10 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     """If a key moves away from the playhead, the face follows; a pose set by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
-    session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.of(JOY), 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
-    session.edit(keyframes.moved(session.script, Places.of(KeyPlace(POSES, 1.5)), -0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.of(KeyId(POSES, 1.5)), -0.5)[0])
     assert session.values["joy"] == 0.3
 
 
@@ -215,18 +215,18 @@ def test_raised_keys_stay_within_limits(amount, choice):
     """Chosen keys are raised by the amount within limits; other keys and all times stay."""
     hello = load_script(HELLO)
     limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))
-    everything = sorted(keyframes.places_of(hello))
-    places = Places.of(*(place for place, is_in in zip(everything, choice, strict=True) if is_in))
+    everything = sorted(keyframes.all_keys(hello))
+    places = KeySet.of(*(place for place, is_in in zip(everything, choice, strict=True) if is_in))
     script = keyframes.raised(hello, places, amount, limits, {"joy"})
     script.check(limits)
-    assert keyframes.places_of(script) == keyframes.places_of(hello)
+    assert keyframes.all_keys(script) == keyframes.all_keys(hello)
     for name, before, after in (
         ("blink", hello.tracks["blink"], script.tracks["blink"]),
         (POSES, hello.posed_channel("joy"), script.posed_channel("joy")),
     ):
         for old, new in zip(before.keys, after.keys, strict=True):
             wanted = min(max(old.value + amount, 0.0), 1.0)
-            is_in = KeyPlace(name, old.time) in places
+            is_in = KeyId(name, old.time) in places
             assert new.value == approx(wanted if is_in else old.value, abs=1e-6)
             assert new.easing == old.easing
     assert [pose.values.get("jaw_open") for pose in script.poses] == [None, 0.1, None, None]

@@ -8,8 +8,8 @@ import pytest
 from imgui_bundle import imgui
 from pytest import approx
 
+from risorius.app.script.key_sets import KeyId, KeySet
 from risorius.app.script.keyframes import POSES, on_frame
-from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script, parse_script, script_text
 from risorius.app.viewer import Viewer
 
@@ -34,8 +34,8 @@ from .driving import (
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
 
-JOY = KeyPlace(POSES, 1.0)
-REST = KeyPlace(POSES, 3.0)
+JOY = KeyId(POSES, 1.0)
+REST = KeyId(POSES, 3.0)
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
@@ -52,7 +52,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
-    assert viewer.face.selection.places == {KeyPlace(POSES, time)}
+    assert viewer.face.selection.keys == {KeyId(POSES, time)}
     assert session.work.name == "own.toml"
     assert session.work.script_is_unsaved
     press_keys(viewer, "ctrl+s")
@@ -90,17 +90,17 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
     """
     session = viewer.session
     press(viewer, key_at(viewer, JOY))
-    assert viewer.face.selection.places == {JOY}
+    assert viewer.face.selection.keys == {JOY}
     assert session.time == 1.0
     assert session.values["joy"] == 1.0
     press(viewer, key_at(viewer, REST), "shift")
-    assert viewer.face.selection.places == {JOY, REST}
+    assert viewer.face.selection.keys == {JOY, REST}
     assert session.time == 1.0
     press(viewer, key_at(viewer, JOY), "shift")
-    assert viewer.face.selection.places == {REST}
-    x, y = key_at(viewer, KeyPlace(POSES, 1.0))
+    assert viewer.face.selection.keys == {REST}
+    x, y = key_at(viewer, KeyId(POSES, 1.0))
     press(viewer, (x + 50, y))
-    assert not viewer.face.selection.places
+    assert not viewer.face.selection.keys
     assert not session.work.unsaved
 
 
@@ -108,9 +108,9 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
     """A drag over empty space selects poses and keys in a box; they move together."""
     session = viewer.session
     x, y = key_at(viewer, JOY)
-    right, low = key_at(viewer, KeyPlace("blink", 2.4))
+    right, low = key_at(viewer, KeyId("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
-    chosen = viewer.face.selection.places
+    chosen = viewer.face.selection.keys
     assert {place.track for place in chosen} == {POSES, "blink"}
     assert len(chosen) == 5
     drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
@@ -133,10 +133,10 @@ def test_the_face_becomes_a_key(viewer):
     press_keys(viewer, "shift+k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert session.script.at(2.0)["jaw_open"] == approx(wanted["jaw_open"])
-    assert viewer.face.selection.places == {KeyPlace(POSES, 2.0)}
+    assert viewer.face.selection.keys == {KeyId(POSES, 2.0)}
     assert session.work.unsaved == "the script"
     press_keys(viewer, "Home")
-    press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
+    press(viewer, key_at(viewer, KeyId(POSES, 2.0)))
     assert session.values == approx(wanted)
     click(viewer, "set key")
     assert viewer.messages.is_error and "No control was moved" in viewer.messages.text
@@ -195,15 +195,15 @@ def test_tracks_unfold_into_rows(viewer):
     """A click on the arrow gives each track a row with selectable keys."""
     left = viewer.gui.places["keys"][0]
     rows = viewer.face.timeline.height()
-    _, y = where_key(viewer, KeyPlace("blink", 2.0))
+    _, y = where_key(viewer, KeyId("blink", 2.0))
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
     assert viewer.face.timeline.height() > rows
     assert viewer.settings.folds["Tracks"]
     settle(viewer)
-    x, y = where_key(viewer, KeyPlace("blink", 2.4))
+    x, y = where_key(viewer, KeyId("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
-    assert viewer.face.selection.places == {KeyPlace("blink", 2.4)}
+    assert viewer.face.selection.keys == {KeyId("blink", 2.4)}
 
 
 def open_jaw(viewer):
@@ -308,7 +308,7 @@ def test_handles_set_slopes(viewer):
     """
     session = viewer.session
     before = session.script
-    viewer.face.selection.places = Places.of(KeyPlace(POSES, 1.0))
+    viewer.face.selection.keys = KeySet.of(KeyId(POSES, 1.0))
     settle(viewer)
     graph = viewer.face.timeline.dope_sheet.graph
     first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))

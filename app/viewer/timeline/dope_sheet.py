@@ -15,7 +15,7 @@ from typing import Any
 from imgui_bundle import imgui
 
 from ...script import Script, keyframes
-from ...script.places import NOWHERE, Places
+from ...script.key_sets import NO_KEYS, KeySet
 from ...text import counted
 from ..context import ApplicationContext
 from ..interface.commands import MenuBar
@@ -36,7 +36,7 @@ class Drag:
     doing: str  # kind of drag: keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
     script: Script  # the script at the press
-    selected: Places  # selected keys at the press
+    selected: KeySet  # selected keys at the press
     has_moved: bool = False
 
 
@@ -65,7 +65,7 @@ class DopeSheet:
         self._waveform = waveform
         self.graph = Graph(app.gui, selection, axis)
         self._drag: Drag | None = None
-        self._grabbed = NOWHERE  # the keys under a press, all at one time
+        self._grabbed = NO_KEYS  # the keys under a press, all at one time
         self._all: tuple[Track, ...] = ()
         self.rows: tuple[Track, ...] = ()  # the visible rows among all
         self._known: Script | None = None  # the script of these rows
@@ -101,7 +101,7 @@ class DopeSheet:
         if self._known is not script:
             self._known = script
             self._all = all_tracks(script, self._session.controls.groups)
-            self.selection.places &= keyframes.places_of(script)
+            self.selection.keys &= keyframes.all_keys(script)
         self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
         self.graph.take(self.rows)
 
@@ -121,7 +121,7 @@ class DopeSheet:
         axis.place(place.x + left, room.x - left - inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            lasts = (times[-1] for row in self.rows for times in row.places.times.values())
+            lasts = (times[-1] for row in self.rows for times in row.keys.times.values())
             axis.fit(float(max([duration, session.time, self._waveform.duration, *lasts])))
             if session.is_playing:
                 axis.follow(session.time)
@@ -164,7 +164,7 @@ class DopeSheet:
         is_hovered = imgui.is_item_hovered()
         theme = self._gui.theme
         duration = self._session.script.duration
-        painter = key_marks.TrackPainter(theme, self.axis, self.selection.places, duration)
+        painter = key_marks.TrackPainter(theme, self.axis, self.selection.keys, duration)
         for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
             if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
                 if has_keys:
@@ -215,7 +215,7 @@ class DopeSheet:
         (x, y) = io.mouse_pos
         row = self._row_at(y)
         hit = None
-        under = NOWHERE
+        under = NO_KEYS
         graph = self.graph
         track = self.rows[row] if 0 <= row < len(self.rows) else None
         if x < left + self._gutter:
@@ -224,16 +224,16 @@ class DopeSheet:
                 if imgui.is_mouse_clicked(LEFT) and track.is_sum:
                     self.settings.folds[track.name] = not self._is_open(track.name)
                 elif imgui.is_mouse_clicked(LEFT):
-                    selection.places = track.places
+                    selection.keys = track.keys
             imgui.set_scroll_y(imgui.get_scroll_y() - em(self.ROW_HEIGHT) * io.mouse_wheel)
             return
         key_reach = 0.5  # [em] from a key within which the mouse is on it
         if self.settings.shows_curves:
             graph.handle = graph.handle_at(x, y)
             hit = None if graph.handle else graph.at(x, y)
-            under = hit.key if hit else NOWHERE
+            under = hit.key if hit else NO_KEYS
         elif track is not None:
-            under = track.places.near(axis.time(x), axis.seconds(em(key_reach)))
+            under = track.keys.nearest(axis.time(x), axis.seconds(em(key_reach)))
         if (under or hit) and not imgui.is_mouse_down(LEFT):
             value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
             imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
@@ -246,30 +246,30 @@ class DopeSheet:
             is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
             self._press(io, under, is_dense=is_dense)
         elif imgui.is_mouse_clicked(RIGHT):
-            if under and not under <= selection.places:
-                selection.places = under
+            if under and not under <= selection.keys:
+                selection.keys = under
             self._wants_menu = True
         self._turn_wheel(io)
 
     def _row_at(self, y: float) -> int:
         return bisect.bisect_right(self._tops, y) - 1
 
-    def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
+    def _begin(self, doing: str, io: Any, selected: KeySet | None = None) -> None:
         """Begin a drag. selected: the keys to select from now on, None to keep the selection."""
-        places = self.selection.places if selected is None else selected
-        self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
+        keys = self.selection.keys if selected is None else selected
+        self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, keys)
 
-    def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
+    def _press(self, io: Any, under: KeySet, *, is_dense: bool) -> None:
         selection = self.selection
-        if not under or (is_dense and not under <= selection.places):
+        if not under or (is_dense and not under <= selection.keys):
             self._grabbed = under
-            self._begin("box", io, selection.places if io.key_shift else NOWHERE)
+            self._begin("box", io, selection.keys if io.key_shift else NO_KEYS)
         else:
-            places = selection.places
+            keys = selection.keys
             if io.key_shift:
-                selection.places = places - under if under <= places else places | under
-            elif not under <= places:
-                selection.places = under
+                selection.keys = keys - under if under <= keys else keys | under
+            elif not under <= keys:
+                selection.keys = under
             self._begin("keys", io)
             self._grabbed = under
 
@@ -317,7 +317,7 @@ class DopeSheet:
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end", "slope"):
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
-            self.selection.places = drag.selected
+            self.selection.keys = drag.selected
         elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
             self._drag = None
             self._messages.attempt(lambda: self._release(io, drag))
@@ -335,7 +335,7 @@ class DopeSheet:
         target = time + self.axis.seconds(right)
         target = min(max(target, 0.0), self.axis.end)  # later times are invisible
         offset = self._snapped(target, io) - time if right else 0.0
-        script, places = keyframes.moved(drag.script, drag.selected, offset)
+        script, keys = keyframes.moved(drag.script, drag.selected, offset)
         line = f"{time + offset:.2f} s"
         held = self.graph.held
         if held is not None:
@@ -344,10 +344,10 @@ class DopeSheet:
                 amount = round(held.value + amount, 2) - held.value
             limits = self._session.controls.limits
             posed = {held.curve.control}
-            script = keyframes.raised(script, places, amount, limits, posed)
+            script = keyframes.raised(script, keys, amount, limits, posed)
             line += f", {held.curve.label} {held.value + amount:.2f}"
         self._session.edit(script, is_done=False)
-        self.selection.places = places
+        self.selection.keys = keys
         imgui.set_tooltip(line)
 
     def _bend(self, y: float, drag: Drag) -> None:
@@ -359,28 +359,28 @@ class DopeSheet:
 
     def _select_box(self, io: Any, drag: Drag) -> None:
         corner = (io.mouse_pos.x, io.mouse_pos.y)
-        inside = NOWHERE
+        inside = NO_KEYS
         if self.settings.shows_curves:
             inside = self.graph.inside(drag.began, corner)
         else:
             times = sorted(self.axis.time(x) for x in (drag.began[0], corner[0]))
             rows = sorted(self._row_at(y) for y in (drag.began[1], corner[1]))
             for track in self.rows[max(rows[0], 0) : max(rows[1] + 1, 0)]:
-                inside |= track.places.between(*times)
-        self.selection.places = drag.selected | inside
+                inside |= track.keys.between(*times)
+        self.selection.keys = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
         """End the drag at the release; return a message about the change."""
         session = self._session
         line = None
         if drag.doing == "keys" and drag.has_moved:
-            lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
+            lost = len(keyframes.all_keys(drag.script)) - len(keyframes.all_keys(session.script))
             line = f"{counted(lost, 'key')} replaced; [Undo] brings back" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
-                self.selection.places = drag.selected | self._grabbed
+                self.selection.keys = drag.selected | self._grabbed
             if self._grabbed and not io.key_shift:
-                self.selection.places = self._grabbed
+                self.selection.keys = self._grabbed
                 session.is_playing = False
                 line = session.seek(self._grabbed.first)
         if drag.doing in ("keys", "end", "slope") and drag.has_moved:

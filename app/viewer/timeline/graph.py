@@ -15,8 +15,8 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...script.easings import free_easing
+from ...script.key_sets import NO_KEYS, KeyId, KeySet, is_any_of
 from ...script.keyframes import SAME
-from ...script.places import NOWHERE, KeyPlace, Places, among
 from ..interface.gui import Gui, em, ink_of
 from .key_marks import Point, draw_line
 from .keys import KeySelection, Track
@@ -30,13 +30,13 @@ class Hit(NamedTuple):
 
     curve: Track
     value: float
-    key: Places = NOWHERE
+    key: KeySet = NO_KEYS
 
 
 class Handle(NamedTuple):
     """A Bezier control point of the segment that ends at `key`; it sets the slope at one end."""
 
-    key: Places
+    key: KeySet
     number: int  # 0: at the start of the segment, 1: at its end
     slopes: tuple[float, float]  # at both ends, relative to the mean slope
     ends: tuple[float, float]  # the values at this end and at the other end of the segment
@@ -73,7 +73,7 @@ class Graph:
         return ink_of(imgui.color_convert_hsv_to_rgb(hue, *light), opacity)
 
     def _is_selected(self, curve: Track) -> bool:
-        return curve.track in self._selection.places.times
+        return curve.track in self._selection.keys.times
 
     def y(self, value: Any) -> Any:
         """Return the y of a value, or of each value of an array [window units]."""
@@ -96,8 +96,8 @@ class Graph:
             away = np.hypot(axis.x(times) - x, self.y(values) - y)
             if len(away) and away.min() < reach:
                 number = int(away.argmin())
-                key = Places.of(KeyPlace(curve.track, float(times[number])))
-                if not self._is_dense(curve) or key <= self._selection.places:
+                key = KeySet.of(KeyId(curve.track, float(times[number])))
+                if not self._is_dense(curve) or key <= self._selection.keys:
                     hits.append((away[number], Hit(curve, float(values[number]), key)))
         distance, hit = min(hits, key=lambda each: each[0], default=(0.0, None))
         return hit if distance < 2.0 * reach else None
@@ -107,12 +107,12 @@ class Graph:
         axis = self._axis
         for curve in self.curves:
             channel = curve.channel
-            chosen = self._selection.places.times.get(curve.track, channel.times[:0])
+            chosen = self._selection.keys.times.get(curve.track, channel.times[:0])
             if not len(chosen) or self._is_dense(curve):
                 continue
             begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
             visible = np.arange(max(begin, 1), min(end + 1, len(channel)))
-            for number in visible[among(channel.times[visible], chosen)].tolist():
+            for number in visible[is_any_of(channel.times[visible], chosen)].tolist():
                 easing = channel.easing(number)
                 slopes = easing.slopes
                 times, values = (
@@ -123,7 +123,7 @@ class Graph:
                 reach = em(self.MOUSE_REACH)
                 if easing.is_held or right - x < 3.0 * reach or abs(there - y) < reach:
                     continue  # no easing, or no room
-                key = Places.of(KeyPlace(curve.track, float(times[1])))
+                key = KeySet.of(KeyId(curve.track, float(times[1])))
                 across = (right - x) / 3.0
                 rise = (there - y) / 3.0
                 first = x + across, y + slopes[0] * rise
@@ -145,15 +145,15 @@ class Graph:
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
         return free_easing(*slopes)
 
-    def inside(self, first: Point, last: Point) -> Places:
+    def inside(self, first: Point, last: Point) -> KeySet:
         """Return the keys in a box."""
         (begin, end), (top, bottom) = (sorted(each) for each in zip(first, last, strict=True))
-        places = NOWHERE
+        found = NO_KEYS
         for curve in self.curves:
             heights = self.y(curve.channel.values)
             times = curve.channel.times[(heights >= top) & (heights <= bottom)]
-            places |= Places({curve.track: times})
-        return places.between(self._axis.time(begin), self._axis.time(end))
+            found |= KeySet({curve.track: times})
+        return found.between(self._axis.time(begin), self._axis.time(end))
 
     def _is_dense(self, curve: Track) -> bool:
         """Whether the visible keys of a curve are too dense to distinguish."""
@@ -241,8 +241,8 @@ class Graph:
         visible = slice(begin, end + 1)
         lines = imgui.get_window_draw_list()
         times = channel.times[visible]
-        selected = self._selection.places.times.get(curve.track, times[:0])
-        are_chosen = among(times, selected)
+        selected = self._selection.keys.times.get(curve.track, times[:0])
+        are_chosen = is_any_of(times, selected)
         is_dense = self._is_dense(curve)
         chosen = times[are_chosen]
         befores = channel.times[np.maximum(np.searchsorted(channel.times, chosen) - 1, 0)]

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from risorius.geometry.arrays import Floats64
 
-from ...script.places import Places
+from ...script.key_sets import KeySet
 from ...sound.decoding import Peaks
 from ..interface.gui import Gui, Theme, em, ink_of
 from ..interface.widgets import shortened
@@ -88,7 +88,7 @@ class TrackPainter:
 
     KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
 
-    def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
+    def __init__(self, theme: Theme, axis: TimeAxis, selected: KeySet, duration: float) -> None:
         """duration: duration of the script [s]."""
         self._theme = theme
         self._axis = axis
@@ -134,10 +134,10 @@ class TrackPainter:
         """Draw the visible keys, selected keys on top; return whether the keys are too dense."""
         size = em(self.KEY_RADIUS if track.is_whole else 0.8 * self.KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
-        names = track.places.times
+        names = track.keys.times
         marks, chosen = (
-            self._axis.x(places.latest_in(self._edges, names))
-            for places in (track.places, self._selected)
+            self._axis.x(keys.latest_in(self._edges, names))
+            for keys in (track.keys, self._selected)
         )
         most_covered_fraction = 0.5  # of the row's width: with more, keys are too dense
         is_dense = len(marks) * 2.0 * size > most_covered_fraction * (self._high - self._low)

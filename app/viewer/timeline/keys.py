@@ -11,8 +11,8 @@ import numpy as np
 from ...control_names import called
 from ...errors import UserError
 from ...script import Channel, Script, keyframes
-from ...script.keyframes import POSES, places_of
-from ...script.places import NOWHERE, Places
+from ...script.key_sets import NO_KEYS, KeySet
+from ...script.keyframes import POSES, all_keys
 from ...text import counted
 from ..messages import Message
 from ..session.session import Session
@@ -24,7 +24,7 @@ class Track:
 
     name: str  # unique among all rows
     label: str
-    places: Places
+    keys: KeySet
     channel: Channel = field(default_factory=partial(Channel, (), ()))  # keys of one control
     control: str = ""  # the name of that control
     track: str = ""  # the name of the track that has its keys
@@ -43,10 +43,10 @@ class Track:
 def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Track, ...]:
     """Return rows for the poses and their controls, then for the tracks by groups of controls."""
     rows = list[Track]()
-    times = places_of(script).times
+    times = all_keys(script).times
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
-        poses = Places({POSES: times.pop(POSES, np.empty(0))})
+        poses = KeySet({POSES: times.pop(POSES, np.empty(0))})
         whole_poses_row = "Whole poses"  # name of a row
         whole = Track(whole_poses_row, "Poses", poses, names=names, is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
@@ -57,17 +57,17 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
             rows.append(row)
     tracks_row = "Tracks"  # name of a row
     if script.tracks:
-        rows.append(Track(tracks_row, tracks_row, Places(times), is_sum=True))
+        rows.append(Track(tracks_row, tracks_row, KeySet(times), is_sum=True))
     for title, controls in groups.items():
         inside = {name: times[name] for name in controls if name in script.tracks}
         parents: tuple[str, ...] = (tracks_row,)
         if 0 < len(inside) < len(script.tracks):
             name = f"{tracks_row}: {title}"
-            group = Track(name, title, Places(inside), parents=parents, is_sum=True)
+            group = Track(name, title, KeySet(inside), parents=parents, is_sum=True)
             rows.append(group)
             parents = tracks_row, group.name
         for name in inside:
-            alone = Places({name: times[name]})
+            alone = KeySet({name: times[name]})
             channel = script.tracks[name]
             sign = "+ " if name in script.posed_names else ""  # the track adds to the poses
             label = f"{sign}{called(name)}"
@@ -91,8 +91,8 @@ class KeySelection:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self.places = NOWHERE
-        self.copied: tuple[Script, Places] | None = None  # keys to paste
+        self.keys = NO_KEYS
+        self.copied: tuple[Script, KeySet] | None = None  # keys to paste
 
     @property
     def can_edit(self) -> bool:
@@ -102,7 +102,7 @@ class KeySelection:
     @property
     def can_change(self) -> bool:
         """Whether there are keys to change."""
-        return bool(self.places) and self.can_edit
+        return bool(self.keys) and self.can_edit
 
     def set_key(self) -> Message:
         """Set keys at the current time for the controls that were moved since the last key."""
@@ -115,11 +115,11 @@ class KeySelection:
                 "no control was moved since the last key; [Key whole pose] sets keys for all"
             )
         time = self._session.set_key(names)
-        there = keyframes.places_of(self._session.script).near(time, keyframes.SAME).times
+        there = keyframes.all_keys(self._session.script).nearest(time, keyframes.SAME).times
         tracks = {name: times for name, times in there.items() if name in names}
         is_posed = len(tracks) < len(names)
         poses = {POSES: there[POSES]} if is_posed and POSES in there else {}
-        self.places = Places(poses | tracks)
+        self.keys = KeySet(poses | tracks)
         controls = listed(names)
         return f"{controls} keyed at {time:.2f} s"
 
@@ -127,16 +127,16 @@ class KeySelection:
         """Set keys for all controls, with the current face, at the current time."""
         time = self._session.set_key()
         script = self._session.script
-        there = keyframes.places_of(script).near(time, keyframes.SAME)
-        self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
+        there = keyframes.all_keys(script).nearest(time, keyframes.SAME)
+        self.keys = KeySet({POSES: there.times[POSES]}) if POSES in there.times else there
         return f"Whole pose keyed at {time:.2f} s"
 
-    def keys_of(self, names: Iterable[str]) -> Places:
+    def keys_of(self, names: Iterable[str]) -> KeySet:
         """Return the keys at the current time in the tracks of these controls."""
         session = self._session
         reach = 0.5 * keyframes.FRAME
-        there = keyframes.places_of(session.script).near(session.time, reach).times
-        return Places({name: there[name] for name in names if name in there})
+        there = keyframes.all_keys(session.script).nearest(session.time, reach).times
+        return KeySet({name: there[name] for name in names if name in there})
 
     def delete_keys_of(self, names: Collection[str]) -> Message:
         """Delete the keys at the current time in the tracks of these controls."""
@@ -148,48 +148,48 @@ class KeySelection:
         """Delete all keys in the tracks of these controls."""
         session = self._session
         tracks = session.script.tracks
-        places = Places({name: tracks[name].times for name in names if name in tracks})
-        session.edit(keyframes.without(session.script, places))
+        deleted = KeySet({name: tracks[name].times for name in names if name in tracks})
+        session.edit(keyframes.without(session.script, deleted))
         return f"{listed(names)}: track cleared; [Undo] brings back"
 
     def delete(self) -> Message:
         """Delete the selected keys."""
-        keys = counted(len(self.places), "key")
-        self._session.edit(keyframes.without(self._session.script, self.places))
+        keys = counted(len(self.keys), "key")
+        self._session.edit(keyframes.without(self._session.script, self.keys))
         return f"{keys} deleted; [Undo] brings back"
 
     def copy(self) -> Message:
         """Copy the selected keys for pasting."""
-        self.copied = self._session.script, self.places
-        return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
+        self.copied = self._session.script, self.keys
+        return f"{counted(len(self.keys), 'key')} copied; [Paste] pastes at the time shown"
 
     def paste(self) -> Message:
         """Paste the copied keys at the current time, even into another script."""
         assert self.copied is not None
-        source, places = self.copied
-        offset = keyframes.key_time(self._session.script, self._session.time) - places.first
-        script, self.places = keyframes.moved(self._session.script, places, offset, source)
-        keys = counted(len(places), "key")
+        source, copied = self.copied
+        offset = keyframes.key_time(self._session.script, self._session.time) - copied.first
+        script, self.keys = keyframes.moved(self._session.script, copied, offset, source)
+        keys = counted(len(copied), "key")
         self._session.edit(script)
-        return f"{keys} copied to {places.first + offset:.2f} s"
+        return f"{keys} copied to {copied.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
         """Move the selected keys by this many frames."""
-        first = self.places.first
+        first = self.keys.first
         offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
-        script, places = keyframes.moved(self._session.script, self.places, offset)
+        script, moved_keys = keyframes.moved(self._session.script, self.keys, offset)
         self._session.edit(script)
-        self.places = places
+        self.keys = moved_keys
 
     def select_all(self) -> None:
         """Select all keys of the script."""
-        self.places = keyframes.places_of(self._session.script)
+        self.keys = keyframes.all_keys(self._session.script)
 
     def ease(self, easing: str) -> None:
         """Set the easing toward the selected keys."""
-        self._session.edit(keyframes.eased(self._session.script, self.places, easing))
+        self._session.edit(keyframes.eased(self._session.script, self.keys, easing))
 
     def is_eased(self, easing: str) -> bool:
         """Whether all selected keys have this easing."""
         script = self._session.script
-        return bool(self.places) and keyframes.eased(script, self.places, easing) == script
+        return bool(self.keys) and keyframes.eased(script, self.keys, easing) == script

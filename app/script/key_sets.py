@@ -11,40 +11,40 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Flags
 
 Times = npt.NDArray[np.float64]  # [s], shape (K,), rising
-NOTHING: Times = np.empty(0)
+NO_TIMES: Times = np.empty(0)
 
 
-class KeyPlace(NamedTuple):
-    """The track of a key, and its time [s]."""
+class KeyId(NamedTuple):
+    """The track of a key, and its time [s]: both identify the key."""
 
     track: str
     time: float
 
 
-class Places(Set[KeyPlace]):
-    """An immutable set of keys: their times in each track."""
+class KeySet(Set[KeyId]):
+    """An immutable set of keys: the times of its keys in each track."""
 
     def __init__(self, times: Mapping[str, Times]) -> None:
         """times: name of the track -> times [s], strictly rising."""
         self.times = {name: each for name, each in times.items() if len(each)}
 
     @classmethod
-    def of(cls, *places: KeyPlace) -> Places:
+    def of(cls, *keys: KeyId) -> KeySet:
         """Make a set of a few keys."""
         times: dict[str, set[float]] = {}
-        for track, time in places:
+        for track, time in keys:
             times.setdefault(track, set()).add(time)
         return cls({name: np.array(sorted(each)) for name, each in times.items()})
 
     @classmethod
-    def _from_iterable(cls, places: Iterable[Any]) -> Places:  # type: ignore[override]
-        return cls.of(*places)  # for the results of Set's operators
+    def _from_iterable(cls, keys: Iterable[Any]) -> KeySet:  # type: ignore[override]
+        return cls.of(*keys)  # for the results of Set's operators
 
-    def __contains__(self, place: object) -> bool:
-        return isinstance(place, KeyPlace) and place.time in self.times.get(place.track, NOTHING)
+    def __contains__(self, key: object) -> bool:
+        return isinstance(key, KeyId) and key.time in self.times.get(key.track, NO_TIMES)
 
-    def __iter__(self) -> Iterator[KeyPlace]:
-        return (KeyPlace(name, time) for name, each in self.times.items() for time in each.tolist())
+    def __iter__(self) -> Iterator[KeyId]:
+        return (KeyId(name, time) for name, each in self.times.items() for time in each.tolist())
 
     def __len__(self) -> int:
         return sum(map(len, self.times.values()))
@@ -61,13 +61,13 @@ class Places(Set[KeyPlace]):
         """
         latest = np.full(len(edges) - 1, -np.inf)
         for times in (self.times[name] for name in names if name in self.times):
-            after = np.searchsorted(times, edges)
-            is_there = after[1:] > after[:-1]
-            latest[is_there] = np.maximum(latest[is_there], times[after[1:][is_there] - 1])
+            first = np.searchsorted(times, edges)  # the first key at or after each edge
+            has_key = first[1:] > first[:-1]
+            latest[has_key] = np.maximum(latest[has_key], times[first[1:][has_key] - 1])
         found: Times = latest[np.isfinite(latest)]
         return found
 
-    def near(self, time: float, reach: float) -> Places:
+    def nearest(self, time: float, reach: float) -> KeySet:
         """Return the keys at the key time nearest to `time`, if it is within `reach` [s]."""
         around = self.between(time - reach, time + reach).times
         nearest = min(
@@ -77,30 +77,30 @@ class Places(Set[KeyPlace]):
         )
         return self.between(nearest, nearest)
 
-    def between(self, first: float, last: float) -> Places:
+    def between(self, first: float, last: float) -> KeySet:
         """Return the keys from one time to another [s]."""
-        return Places(
+        return KeySet(
             {
                 name: each[np.searchsorted(each, first) : np.searchsorted(each, last, "right")]
                 for name, each in self.times.items()
             }
         )
 
-    def __or__(self, other: Set[Any]) -> Places:
-        return self._joined(other, np.union1d)
+    def __or__(self, other: Set[Any]) -> KeySet:
+        return self._combined(other, np.union1d)
 
-    def __and__(self, other: Set[Any]) -> Places:
-        return self._joined(other, np.intersect1d)
+    def __and__(self, other: Set[Any]) -> KeySet:
+        return self._combined(other, np.intersect1d)
 
-    def __sub__(self, other: Set[Any]) -> Places:
-        return self._joined(other, np.setdiff1d)
+    def __sub__(self, other: Set[Any]) -> KeySet:
+        return self._combined(other, np.setdiff1d)
 
-    def _joined(self, other: Set[Any], join: Callable[[Times, Times], Times]) -> Places:
-        theirs = (other if isinstance(other, Places) else Places.of(*other)).times
-        return Places(
+    def _combined(self, other: Set[Any], combine: Callable[[Times, Times], Times]) -> KeySet:
+        other_times = (other if isinstance(other, KeySet) else KeySet.of(*other)).times
+        return KeySet(
             {
-                name: join(self.times.get(name, NOTHING), theirs.get(name, NOTHING))
-                for name in (self.times | theirs)
+                name: combine(self.times.get(name, NO_TIMES), other_times.get(name, NO_TIMES))
+                for name in (self.times | other_times)
             }
         )
 
@@ -113,13 +113,13 @@ class Places(Set[KeyPlace]):
     __hash__ = None  # type: ignore[assignment]
 
 
-NOWHERE = Places({})
+NO_KEYS = KeySet({})
 
 
-def among(times: Times, others: Times, reach: float = 0.0) -> Flags:
+def is_any_of(times: Times, others: Times, reach: float = 0.0) -> Flags:
     """Return which times are within `reach` [s] of one of the others."""
     if not len(others):
         return np.zeros(len(times), np.bool_)
-    after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)
-    is_among: Flags = np.abs(others[after] - times) <= reach
-    return is_among
+    first = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)
+    is_near: Flags = np.abs(others[first] - times) <= reach
+    return is_near
