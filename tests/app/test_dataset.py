@@ -63,7 +63,7 @@ def samples(made: Path) -> list[dict[str, Any]]:
 
 
 def test_a_set_has_these_files_and_nothing_else(made, samples):
-    """A set has exactly these files, and no picture and no face twice."""
+    """A set has exactly these files; no picture and no face occurs twice."""
     message = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
     assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT

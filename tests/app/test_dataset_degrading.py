@@ -15,7 +15,7 @@ GREY = np.full((120, 120, 3), 128, np.uint8)
 
 
 def test_none_of_it_changes_nothing():
-    """With no degradation every byte stays the same."""
+    """Without degradation every byte stays the same."""
     image = np.random.default_rng(1).integers(0, 256, (30, 40, 3)).astype(np.uint8)
     assert np.array_equal(degraded(image, CLEAN), image)
 

@@ -52,7 +52,7 @@ def written(refined, path):
 
 
 def test_one_topology_that_no_frame_is_finer_than(clip, refined):
-    """The skin has all triangles that any frame needs, and is near each frame's own refinement."""
+    """The skin has all triangles that a frame needs, and is near each separately refined frame."""
     counts = [len(mesh.triangles) for mesh in clip.refined(Refinement("paper"))]
     assert (refined.fewest, refined.most) == (min(counts), max(counts))
     assert len(clip.skin.faces) < max(counts) <= len(refined.clip.skin.faces)

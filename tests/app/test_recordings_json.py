@@ -195,7 +195,7 @@ def tracks():
 
 
 def test_tracks_of_visemes(tmp_path):
-    """Its I, O, U become ih, oh, ou; lips meet at PP, and silence moves nothing."""
+    """OpenFaceFX's I, O, U become ih, oh, ou; lips meet at PP, and silence moves nothing."""
     take = take_in(tmp_path, tracks())
     assert take.kind == "Viseme tracks"
     assert take.is_calibrated

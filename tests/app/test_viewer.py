@@ -393,7 +393,7 @@ def test_a_pull_is_the_same_beside_busy_processes(viewer):
 def test_the_muscle_under_the_mouse_shows_softly(viewer):
     """Fibres of the muscle below the mouse light up, fainter than those of a control.
 
-    Beside the skin none does.
+    Beside the skin no fibre lights up.
     """
     xdotool(viewer, "mousemove", *landmark(viewer, 54))
     view = viewer.face.view

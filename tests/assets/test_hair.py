@@ -105,7 +105,7 @@ def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
 
 @pytest.mark.parametrize("cut", ["tailed", "knotted", "topknot"])
 def test_layers_of_tied_hair_have_no_gap_at_their_seam(cut):
-    """First and last strand have equal points, normals and layers; light shone through."""
+    """First and last strand have equal points, normals and layers; a gap would let light in."""
     tied = hair_of(haired(cut), HAIR + "_tied")
     point_count = 40
     for each in (tied.vertices, tied.normals, tied.striation[:, 2:5]):
@@ -113,7 +113,7 @@ def test_layers_of_tied_hair_have_no_gap_at_their_seam(cut):
 
 
 def test_a_tail_ends_in_a_point():
-    """Its end is thin, so nobody sees the hollow between its layers."""
+    """The end of a tail is thin, so that the hollow between its layers is not visible."""
     tied = hair_of(haired("tailed"), HAIR + "_tied").vertices.reshape(-1, 40, 3)
     assert np.ptp(tied[:, -1], axis=0).max() < 3.0  # [mm]
 
@@ -237,7 +237,7 @@ def test_no_slit_is_below_the_outline_of_hair_from_above():
 
 
 def test_hair_behind_ears_lies_above_the_skin():
-    """Strands combed back behind an ear stay out of the skin, which showed as a grey patch."""
+    """Strands combed back behind an ear stay above the skin; skin over them was a grey patch."""
     person = person_called(2)
     hair = hair_of(person)
     skin = closest_points(hair.vertices, person.vertices, person.faces)

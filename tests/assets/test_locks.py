@@ -31,7 +31,7 @@ def picture(name, view, size=(700, 700)):
 
 @pytest.mark.parametrize("growth", [SHORT, TIED])
 def test_locks_are_sound_ribbons(growth):
-    """Both corners of a station lie at the same distance from its middle, and taper to a tip."""
+    """The two corners of a station are equally far from its middle; a ribbon ends in a tip."""
     hair = built_in_hair(load("head"))[1]
     locks = locks_on(hair, growth)
     assert len(locks.vertices) == CORNERS * growth.count
@@ -58,7 +58,7 @@ def test_locks_are_sound_ribbons(growth):
 def test_the_outline_of_short_hair_is_broken_by_ends(name):
     """Ends of hair stand off the outline above the head; it was a smooth arc.
 
-    Counted are pixels in each column that hair covers in part. Of layers alone there is one.
+    The test counts pixels that hair covers in part, in each column; layers alone have one.
     """
     alpha = picture(name, "0,0")[:250, 260:440, 3]
     is_part = (alpha > 8.0) & (alpha < 247.0)
@@ -106,9 +106,9 @@ def test_locks_of_the_nape_lie_side_by_side(name):
 
 @pytest.mark.parametrize(("name", "least"), [(3, 300), (8, 300), (11, 60), (66, 60)])
 def test_tied_hair_is_seen_from_the_front(name, least):
-    """A tail or a knot is seen beside or above the head; only a cap of hair was.
+    """A tail or a knot is seen beside or above the head.
 
-    Counted are pixels of hair at its place.
+    The test counts its pixels; pictures once showed only a cap of hair.
     """
     scene = FaceScene(person_of(name))
     with Capture(scene, CaptureOptions((300, 300), passes=("segmentation",))) as capture:

@@ -96,7 +96,7 @@ HOUSE = [[0, 1, 2], [0, 2, 3], [2, 4, 3]]
 
 
 def ply(form, lists, element="face", **more):
-    """A PLY file of five points and lists of their numbers.
+    """A PLY file of five points, and lists of point numbers.
 
     more: "kind", the type of the lists' numbers; "colours", a row for each point; "names" and
     "colour_kind" of the colours.

@@ -1,7 +1,7 @@
 """Random meshes with random options, judged only by corners and sub-edges.
 
 Other tests vary one option at a time. These tests vary all options together, in any numeric type
-and memory order, and judge the result in another way than `refine.check`: they follow the border of
+and memory order. They judge the result differently from `refine.check`: they follow the border of
 each triangle's pieces, and compare the bytes of all triangles along each edge.
 """
 

@@ -52,7 +52,7 @@ def test_furrows_are_darker(surface):
 
 
 def test_stretched_skin_is_redder_and_has_no_furrow(surface):
-    """Amounts below 0 show no furrow, whose slope and shade they would turn round, but redden."""
+    """Amounts below 0 redden the skin; they show no furrow with reversed slope and shade."""
     furrow = (190, 190, 200, 0)
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     stretched = at(furrowed(surface, furrow, (-1.0, -1.0)), 25, 0)

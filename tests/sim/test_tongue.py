@@ -163,7 +163,7 @@ def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
 @pytest.mark.parametrize("number", [5, 6])
 @pytest.mark.parametrize(("control", "least"), [("tongueOut", 25.0), ("viseme_TH", 8.0)])
 def test_the_tongue_of_a_small_mouth_comes_out(number, control, least):
-    """The jaw opens far enough for it: these persons' tongues stayed behind their teeth.
+    """The jaw opens far enough for the tongue, which once stayed behind these persons' teeth.
 
     least: how far the tip comes forward, with the way down over the lip [mm].
     """

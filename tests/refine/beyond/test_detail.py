@@ -89,7 +89,8 @@ def test_no_stars_in_folds():
     """With a finer mesh that adds nothing, normals of a folded grid are as smooth as cubic ones.
 
     Between a vertex and the quarter points around it, normals turn by a part of the fold. With one
-    direction for a whole edge, they turned by half of the fold there, and by nothing from there on.
+    direction for a whole edge, they would turn by half of the fold at the first quarter point, and
+    by nothing after it.
     """
     flat = meshes.open_grid(8, 6)
     x = flat.vertices[:, 0] - 4.0
