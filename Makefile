@@ -1,19 +1,19 @@
 # Risorius: two commands on a fresh Debian or Ubuntu.
 #
-#   make demo     set up everything and film what refinement does: out/demo.mp4 and out/demo.png
-#   make test     set up everything, check the code and pass the first lane of tests, in four minutes
+#   make demo     set up everything and film the effect of refinement: out/demo.mp4 and out/demo.png
+#   make test     set up everything, check the code and run the first lane of tests (4 minutes)
 #   make setup    only make .venv with everything in it
-#   make check    ruff, mypy and the import rules alone
+#   make check    run ruff, mypy, the import rules and the budgets alone
 #   make docs     build the documentation's site into out/site
-#   make reproduce  what the paper says and shows, made anew, on a page: out/reproduce/index.html
-#   make clean    remove .venv and what was rendered
+#   make reproduce  check the paper's claims and draw its figures: out/reproduce/index.html
+#   make clean    remove .venv and all rendered files
 #
 # Slower ones, before a release:
 #
-#   make test-all         make test, then the second lane: details, and all tests that take long
-#   make test-windows     pass the tests of windows ten times, quiet and beside two busy processes
-#   make test-lowest      pass the tests with the oldest versions that pyproject.toml allows
-#   make test-processors  pass the tests as other processors round
+#   make test-all         make test, then the second lane: details, and all slow tests
+#   make test-windows     run the tests of windows ten times, alone and beside two busy processes
+#   make test-lowest      run the tests with the oldest versions that pyproject.toml allows
+#   make test-processors  run the tests with the rounding of other processors
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -24,10 +24,10 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo -n t
 OPENGL_PACKAGES := libegl1 libgl1 libgl1-mesa-dri
 SCREEN_PACKAGES := xvfb xauth xdotool
 
-# Tests start the command dozens of times: our modules are compiled once, whatever the machine says.
+# Tests start the command dozens of times, so Python keeps our compiled modules on every machine.
 unexport PYTHONDONTWRITEBYTECODE
 
-# $(call debian_packages,what needs them,packages): install where we may, else name the one command.
+# $(call debian_packages,purpose,packages): install them as root or with sudo, or print the command.
 define debian_packages
 	if command -v apt-get >/dev/null && { [ "$$(id -u)" = 0 ] || [ -n "$(SUDO)" ]; }; then \
 		echo "$(1): installing $(2)"; \
@@ -42,16 +42,16 @@ endef
 demo: setup opengl
 	@$(BIN)/risorius demo
 
-# What draws and opens windows: a third of the work. One process at a time may do that.
+# Tests that draw or open windows take a third of the time. One process runs them.
 WINDOWS := $(wildcard tests/app/test_viewer*.py) tests/app/test_plug_ins.py \
 	tests/bench/test_window.py tests/refine_gl tests/render
 
-# On a fresh machine one process compiles what is simulated and refined; else each would do so.
+# On a fresh machine one process compiles simulation and refinement for all others.
 COMPILE := $(BIN)/risorius capture --set joy --size 64x64 -o .venv/compiled.png --quiet
 
-# $(call pass_lane,marks,before): one process tests windows, after what comes before them, on a
-# screen of its own, whose keyboard nobody else may touch. Beside it two share all the rest, file by
-# file, so that two cores have work to the end. What the first prints is shown when all have ended.
+# $(call pass_lane,marks,before): one process runs the commands `before` and then the tests of
+# windows, on its own screen, so no other process takes its keyboard. Two processes share all other
+# tests, file by file, which keeps two cores busy. The output of the first is printed at the end.
 define pass_lane
 	{ $(2) $(SCREEN) -n 199 $(BIN)/python -m pytest -m "$(1)" $(WINDOWS); } >.venv/windows.log 2>&1 & \
 		windows=$$!; code=0; $(COMPILE); \
@@ -60,7 +60,7 @@ define pass_lane
 		wait $$windows || code=1; cat .venv/windows.log; exit $$code
 endef
 
-# A variable: lines that name MAKE themselves are run even by `make --dry-run`.
+# This is a variable, because `make --dry-run` runs lines that contain MAKE.
 CHECKS = $(MAKE) --no-print-directory check &&
 
 test: setup opengl screen
@@ -69,10 +69,10 @@ test: setup opengl screen
 test-all: test
 	@$(call pass_lane,slow)
 
-# A test that waits too little fails now and then, more often on a busy machine. ROUNDS=3 is less.
+# A test that waits too briefly fails sometimes, more often on a busy machine. ROUNDS=3 is faster.
 ROUNDS ?= 10
 
-# The busy processes end with the shell that began them, however that ends.
+# The busy processes end with the shell that started them.
 test-windows: setup opengl screen
 	@code=0; for company in quiet busy; do \
 		[ $$company = quiet ] || for _ in 1 2; do while kill -0 $$$$; do :; done 2>/dev/null & done; \
@@ -82,7 +82,7 @@ test-windows: setup opengl screen
 		done; \
 	done; exit $$code
 
-# Compiled code is kept apart: the other numba could not read it.
+# Compiled code has its own folder, because the other numba cannot read it.
 test-lowest: $(LOWEST)/.ready screen
 	@NUMBA_CACHE_DIR=$(CURDIR)/$(LOWEST)/compiled $(SCREEN) $(LOWEST)/bin/python -m pytest
 
@@ -90,13 +90,13 @@ $(LOWEST)/.ready: pyproject.toml tests/lowest.py
 	@rm -rf $(LOWEST)
 	@$(PYTHON) -m venv $(LOWEST)
 	@$(LOWEST)/bin/python tests/lowest.py > $(LOWEST)/constraints.txt
-	@echo "Installing Risorius and the oldest of what it needs into $(LOWEST)"
+	@echo "Installing Risorius and the oldest versions of its dependencies into $(LOWEST)"
 	@$(LOWEST)/bin/python -m pip install -qq --disable-pip-version-check \
 		--constraint $(LOWEST)/constraints.txt --editable ".[dev]"
 	@touch $@
 
-# Rounds as other processors do, as far as this one can: OpenBLAS, numpy and numba each choose code
-# by the processor, and can be told. The last needs AVX-512. TESTS=tests/assets passes a part alone.
+# OpenBLAS, numpy and numba choose code by the processor, and these variables choose it for them.
+# The last variant needs AVX-512. TESTS=tests/assets runs a part alone.
 OLD_PROCESSOR := OPENBLAS_CORETYPE=Nehalem NUMBA_CPU_NAME=generic \
 	NPY_DISABLE_CPU_FEATURES=X86_V3,X86_V4,AVX512_ICL,AVX512_SPR
 
@@ -119,7 +119,7 @@ check: setup
 reproduce: setup opengl
 	@$(BIN)/risorius reproduce all
 
-# A broken link stops it. The variable silences an advertisement of the theme's makers.
+# A broken link is an error. The variable silences an advertisement in the theme.
 docs: setup
 	@$(BIN)/python tests/as_installed.py .venv/as_installed
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
@@ -132,11 +132,11 @@ $(READY): pyproject.toml constraints.txt
 		{ echo "Risorius needs Python 3.11 or newer; name one: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 2; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian_packages,Python's venv,python3-venv); }
 	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
-	@echo "Installing Risorius and what it needs into .venv, which takes minutes"
+	@echo "Installing Risorius and its dependencies into .venv, which takes minutes"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-compile \
 		--constraint constraints.txt --editable ".[dev]"
 	@touch $(READY)
-	@echo "Installed; .venv/bin/risorius doctor says what works here"
+	@echo "Installed; .venv/bin/risorius doctor reports what works here"
 
 opengl: setup
 	@$(BIN)/risorius doctor --offscreen --quiet || { $(call debian_packages,OpenGL without a screen (EGL),$(OPENGL_PACKAGES)); }
