@@ -57,7 +57,7 @@ class Frames:
         self._work.write(rest_cosines, offset=NUMBER_BYTES * sizes["rest_cosines_at"])
         self._frame = 0
         self._bind()
-        self._hand_over(rest_positions, rules.still)
+        self._upload_positions(rest_positions, rules.still)
         for name in rules.passes[: rules.passes.index("mark") + 1]:
             self._dispatch(name, is_rest=True)
 
@@ -76,7 +76,7 @@ class Frames:
         }
         for binding, name in stream_buffers.items():
             getattr(stream, name).bind_to_storage_buffer(binding)
-        self._hand_over(positions, metric)
+        self._upload_positions(positions, metric)
         for name in self._programs:
             self._dispatch(name)
 
@@ -105,7 +105,7 @@ class Frames:
         for binding, buffer in enumerate((self._mesh, self._positions, self._fields, self._work)):
             buffer.bind_to_storage_buffer(binding)
 
-    def _hand_over(self, positions: Floats64, metric: Floats32 | None) -> None:
+    def _upload_positions(self, positions: Floats64, metric: Floats32 | None) -> None:
         """Upload positions in double precision; the driver may still read the former ones."""
         if len(positions):
             self._positions.orphan()

@@ -127,11 +127,11 @@ class Rules:
         soon = np.float32(0.0)
         if by is not None:
             soon = np.float32(port.GROWTH_SHARE) * by.thresholds.once / by.thresholds.width
-        haste = port.RAMP_WIDTH / soon if soon > 0.0 else np.float32(0.0)
+        slope = port.RAMP_WIDTH / soon if soon > 0.0 else np.float32(0.0)
         limits |= {
             "size_soon": float(soon),
             "size_ramp": float(port.RAMP_WIDTH),
-            "size_haste": float(haste),
+            "size_slope": float(slope),
         }
         return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
 
@@ -154,12 +154,13 @@ class Rules:
         vertices = mesh.vertex_count
         edges = len(mesh.edges)
         faces = len(mesh.faces)
-        fields = {"points": vertices, "normals": vertices, "middles": edges}
+        fields = {"points": vertices, "normals": vertices, "midpoints": edges}
         if self.scheme == "cubic":
             fields |= dict.fromkeys(
-                ("tangent_normals", "steeper", "seen", "surface_normals"), vertices
+                ("tangent_normals", "steepened_normals", "relative_positions", "surface_normals"),
+                vertices,
             )
-            fields |= {"displaced": 3 * edges, "edge_normals": edges, "centres": faces}
+            fields |= {"displacements": 3 * edges, "edge_normals": edges, "centres": faces}
         return fields
 
     def undefined_edges(self) -> npt.NDArray[np.bool_]:
@@ -189,9 +190,9 @@ class Rules:
         rings = port.vertex_rings(self._mesh)
         return {
             "wings": self._mesh.around.wings,
-            "near": rings.near,
+            "ring_neighbours": rings.near,
             "ring_starts": rings.starts,
-            "others": rings.others,
+            "further_neighbours": rings.others,
             "ring_own": rings.own,
             "ring_weight": rings.ring,
         }
@@ -208,10 +209,12 @@ class Rules:
             "corner_weights": weights,
             "triangle_edges": mesh.triangle_edges.view(np.uint32),
             "edge_sides": mesh.edge_sides,
-            "beyond": port.follow_borders(mesh, self._rest),
+            "border_neighbours": port.follow_borders(mesh, self._rest),
             "neighbour_starts": np.concatenate([[0], np.cumsum(valences)]),
             "neighbours": mesh.edges[:, ::-1].ravel()[order],
-            "neighbour_share": (port.STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
+            "neighbour_weights": (port.STEEPENING_SHARE / np.maximum(valences, 1)).astype(
+                np.float32
+            ),
         }
 
 

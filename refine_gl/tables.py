@@ -102,7 +102,7 @@ def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
     return {
         "splits": len(mesh.attribute_edges),
         "first_points": len(mesh.attribute_edges),
-        "moved": mesh.vertex_count,
+        "moved_frames": mesh.vertex_count,
         "configurations": faces,
         "first_triangles": faces,
         "first_centres": faces,

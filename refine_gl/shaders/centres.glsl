@@ -1,11 +1,11 @@
 // A triangle: its middle on the surface where every edge is split (refine/beyond/surface_normals.py).
 FOR_EACH(t, face_count) {
-    precise vec3 of_corners = vec3(0.0), of_middles = vec3(0.0);
+    precise vec3 corner_sum = vec3(0.0), midpoint_sum = vec3(0.0);
     for (uint k = 0u; k < 3u; ++k) {
         uint e = triangle_edges(3u * t + k);
-        of_corners += seen(faces(3u * t + k)).xyz;
-        if (e != NONE) of_middles += middles(e).xyz;
+        corner_sum += relative_positions(faces(3u * t + k)).xyz;
+        if (e != NONE) midpoint_sum += midpoints(e).xyz;
     }
-    precise vec3 out_of = of_middles - of_corners;
-    centres(t) = vec4(weighed(1.0 / 3.0, of_corners, 0.511, out_of), 0.0);
+    precise vec3 outward = midpoint_sum - corner_sum;
+    centres(t) = vec4(weighted_sum(1.0 / 3.0, corner_sum, 0.511, outward), 0.0);
 }

@@ -1,8 +1,8 @@
-// An attribute edge: how often it is split (section 4.1), and where its points are within the group.
+// An attribute edge: its number of splits (section 4.1), and the index of its points in the group.
 uniform uint frame;
 uniform bool is_rest;
 
-float scaled(float measure, float once, float width, float most) {
+float metric_of(float measure, float once, float width, float most) {
     precise float above = measure - once;
     return min(float(double(above) / double(width)), most);
 }
@@ -11,12 +11,12 @@ uint split_of(uint e, bool is_original) {
     uint split = 0u;
     float metric = uintBitsToFloat(0xff800000u);  // the largest: above 0 for one split, 1 for two
 #ifdef BY_NORMAL
-    float cosine = dotted(normals(edge_points(4u * e)).xyz, normals(edge_points(4u * e + 1u)).xyz);
+    float cosine = exact_dot(normals(edge_points(4u * e)).xyz, normals(edge_points(4u * e + 1u)).xyz);
     precise float drop = rest_cosines(e) - cosine;
-    // Where it is not 0 at rest it is -infinity: no direction to compare with, and never a split.
+    // A cosine of -infinity at rest marks an edge whose normals are undefined: it is never split.
     if (is_rest && rest_cosines(e) == 0.0) work[rest_cosines_at + e] = floatBitsToUint(cosine);
 #ifdef BLENDED
-    metric = scaled(drop, drop_once, drop_width, drop_most);
+    metric = metric_of(drop, drop_once, drop_width, drop_most);
 #else
     split = uint(drop > drop_once) + uint(drop > drop_twice);
 #endif
@@ -24,10 +24,10 @@ uint split_of(uint e, bool is_original) {
 #ifdef BY_DISPLACEMENT
     bool is_border = edge_points(4u * e + 2u) == edge_points(4u * e);
     float weight = is_border ? 8.0 : 1.0;  // refine/beyond/displacement.py
-    float size = scaled(weight * middles(e).w, size_once, size_width, size_most);
+    float size = metric_of(weight * midpoints(e).w, size_once, size_width, size_most);
     if (size_soon < size_ramp && 0.0 < size && size < 1.0) {  // refine/beyond/displacement.py
         if (size < size_soon) {
-            precise float sooner = size * size_haste;
+            precise float sooner = size * size_slope;
             size = sooner;
         } else {
             precise float left = 1.0 - size, whole = 1.0 - size_soon, slope = 1.0 - size_ramp;
@@ -41,12 +41,12 @@ uint split_of(uint e, bool is_original) {
     metric = max(metric, measured(e));
 #endif
 #ifdef CURVED
-    if (is_original) {  // how far the points have grown out of the edge
+    if (is_original) {  // geomorph weights of its points
 #ifdef BLENDED
         edge_normals(e).w = min(max(metric / 0.25, 0.0), 1.0);
-        displaced(3u * e).w = min(max((metric - 1.0) / 0.25, 0.0), 1.0);
+        displacements(3u * e).w = min(max((metric - 1.0) / 0.25, 0.0), 1.0);
 #else
-        edge_normals(e).w = displaced(3u * e).w = 1.0;
+        edge_normals(e).w = displacements(3u * e).w = 1.0;
 #endif
     }
 #endif
@@ -58,10 +58,10 @@ void main() {
     if (r < attribute_edge_count && !(is_rest && r >= edge_count)) {
         uint e = attribute_edges(r);
         splits(r) = split = split_of(e, r < edge_count);
-#ifndef CURVED  // all write the same, and nobody clears it
-        if (split > 0u) moved(edge_points(4u * e)) = moved(edge_points(4u * e + 1u)) = frame;
+#ifndef CURVED  // all threads write the same number; it is never cleared
+        if (split > 0u) moved_frames(edge_points(4u * e)) = moved_frames(edge_points(4u * e + 1u)) = frame;
 #endif
     }
-    uint before = counted_before(split + (split >> 1), 0u);
+    uint before = exclusive_sum(split + (split >> 1), 0u);
     if (r < attribute_edge_count) first_points(r) = before;
 }

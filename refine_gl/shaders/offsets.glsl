@@ -1,9 +1,9 @@
 // One group: from sums within blocks to sums over all, and the command that draws the frame.
-uint summed(uint first, uint count, uint start) {  // exclusive sums in place; the last comes back
+uint sum_blocks(uint first, uint count, uint start) {  // exclusive sums in place; returns the total
     for (uint base = 0u; base < count; base += uint(GROUP)) {
         uint k = base + gl_LocalInvocationIndex;
         uint value = k < count ? blocks(first + k) : 0u;
-        uint sum = scanned(value);
+        uint sum = inclusive_sum(value);
         uint most = sums[GROUP - 1];
         barrier();
         if (k < count) blocks(first + k) = start + sum - value;
@@ -13,10 +13,10 @@ uint summed(uint first, uint count, uint start) {  // exclusive sums in place; t
 }
 
 void main() {
-    uint row_count = summed(0u, attribute_edge_blocks, wedge_count);
-    uint triangle_count = summed(attribute_edge_blocks, face_blocks, 0u);
+    uint row_count = sum_blocks(0u, attribute_edge_blocks, wedge_count);
+    uint triangle_count = sum_blocks(attribute_edge_blocks, face_blocks, 0u);
 #ifdef BLENDED
-    row_count = summed(attribute_edge_blocks + face_blocks, face_blocks, row_count);
+    row_count = sum_blocks(attribute_edge_blocks + face_blocks, face_blocks, row_count);
 #endif
     if (gl_LocalInvocationIndex == 0u) {
         command[0] = 3u * triangle_count;  // of DrawElementsIndirectCommand: indices, one instance

@@ -5,9 +5,9 @@ FOR_EACH(v, vertex_count) {
         uint corner = vertex_corners(k), t = corner / 3u, i = corner - 3u * t;
         if (triangle_edges(3u * t) == NONE) continue;
         uint after = triangle_edges(corner), before = triangle_edges(3u * t + (i + 2u) % 3u);
-        precise vec3 outward = centres(t).xyz - seen(v).xyz;
-        precise vec3 across = middles(before).xyz - middles(after).xyz;
-        total += crossed(outward, across);
+        precise vec3 outward = centres(t).xyz - relative_positions(v).xyz;
+        precise vec3 across = midpoints(before).xyz - midpoints(after).xyz;
+        total += exact_cross(outward, across);
     }
     surface_normals(v) = vec4(unit(total), 0.0);
 }
