@@ -278,10 +278,10 @@ def report(poses: Sequence[Pose]) -> str:
             f"{len(poses)} poses: every row of the layers, and random mixtures of muscles;",
             f"{sum(pose.inverted for pose in torn)} triangles turned over, in {len(torn)} poses.",
             "",
-            "slit      widest between lips that nothing opens, from any side in front [mm]",
-            "eye       greatest height at which an eye that is shut is seen, from there, too [mm]",
+            "slit      widest gap between lips that no muscle opens, from any side in front [mm]",
+            "eye       greatest visible height of a shut eye, from the same sides [mm]",
             "inverted  triangles turned by more than a right angle against the skin around them",
-            "lips, lids, teeth: how deep skin is in them [mm]",
+            "lips, lids, teeth: depth of skin in them [mm]",
             "",
             *table("worst:<9|:6.2f|in:<1", rows),
         ]

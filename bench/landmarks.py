@@ -274,7 +274,10 @@ def report(finding: Finding) -> str:
         *table("points:<7|all:6.2f|frontal:8.2f|largest constant:17.2f", rows),
     ]
     if offsets:
-        lines += ["", f"constant above {MOST_CONSTANT:g} %, so far the detector's lie elsewhere:"]
+        lines += [
+            "",
+            f"constant above {MOST_CONSTANT:g} %: the detector defines these points differently:",
+        ]
         lines += table("points:<7|outward:8.1f|down:6.1f", offsets)
     return "\n".join(lines)
 

@@ -82,7 +82,6 @@ def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
             if others:
                 yield (
                     job.number,
-                    f"{file}: is written by line {others[0].number}, and lines are done in no "
-                    "order; "
-                    "make two lists",
+                    f"{file}: is written by line {others[0].number}, and lines have no "
+                    "order; make two lists",
                 )

@@ -68,7 +68,7 @@ def drawing(
             frame = next(messages)
         except DiedError as why:
             raise UserError(
-                f"a process that draws the film ended ({why}); try again, and where memory is "
+                f"a process that draws the film ended ({why}); try again; if memory is "
                 "short, take a smaller --size"
             ) from None
         if frame is not None:

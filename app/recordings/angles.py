@@ -34,6 +34,6 @@ def in_degrees(
     largest_radians = 1.6  # no visible head and no eye turns further
     is_radians = size <= largest_radians
     unit = "radians" if is_radians else "degrees"
-    notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")
+    notes.append(f"Angles reach {size:.2g} and were read as {unit}.")
     scale = -180.0 / math.pi if is_radians else -1.0
     return {name: scale * values - outward.get(name, 0.0) for name, values in moving.items()}

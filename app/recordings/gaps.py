@@ -79,7 +79,7 @@ def whole_take(
 def _left_out(count: int) -> str:
     """Return the report's sentence on rows without a time."""
     were = "was" if count == 1 else "were"
-    return f"{counted(count, 'row')} without a time of their own {were} left out."
+    return f"{counted(count, 'row')} without a time {were} left out."
 
 
 def _missing(gaps: Floats64) -> str:

@@ -43,7 +43,9 @@ def head_of(
     named = _named_angles(frames)
     if named:
         found, used = named
-        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
+        notes.append(
+            "Angles were assumed to grow downward and to the subject's right, as in ARKit."
+        )
         return in_degrees(found, {}, notes), used
     keys = dict.fromkeys(key for frame in frames for key in frame if is_pose(key))
     for key in sorted(keys, key=lambda key: key not in MATRICES):

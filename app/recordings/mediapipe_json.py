@@ -244,7 +244,7 @@ def _shapes(
 ) -> tuple[dict[str, Floats64], list[str]]:
     """Return shape -> values, (frames,), NaN for frames without a face; and unknown names."""
     if (most := max(map(len, frames), default=0)) > 1:
-        notes.append(f"Up to {most} faces are in a frame; the first was taken.")
+        notes.append(f"Up to {most} faces are in a frame; the first was used.")
     values: dict[str, Floats64] = {}
     spellings: dict[str, str] = {}
     repeated: dict[str, None] = {}
@@ -261,7 +261,7 @@ def _shapes(
                 values.setdefault(name, np.full(len(frames), np.nan))[row] = score
     if repeated:
         listed = ", ".join(f"'{each}'" for each in repeated)
-        notes.append(f"Another name holds the same, and these were left out: {listed}.")
+        notes.append(f"These repeat another name, and were left out: {listed}.")
     return values, list(unknown)[:1000]
 
 

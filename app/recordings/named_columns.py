@@ -86,7 +86,7 @@ class Columns:
         if not twice:
             return []
         listed = ", ".join(f"'{name}'" for name in twice)
-        return [f"Another column holds the same, and these were left out: {listed}."]
+        return [f"These repeat another column, and were left out: {listed}."]
 
     @property
     def are_known(self) -> bool:
@@ -118,7 +118,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     only_present = {n: c for n, c in columns.detections.items() if n not in columns.units}
     twice = [name for name in columns.detections if name in columns.units]
     if twice:
-        notes.append(f"Intensities were taken, and detections left out: {', '.join(twice)}.")
+        notes.append(f"Intensities were used, and detections left out: {', '.join(twice)}.")
     if only_present:
         notes.append(f"{', '.join(only_present)}: only present or absent, 0 or 1.")
     wanted = columns.shapes | columns.units | only_present | columns.visemes | columns.angles
@@ -133,7 +133,9 @@ def read(table: Table, request: TakeRequest) -> Take:
     outward = OUTWARD if is_known else {}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
     if columns.angles and not is_known:
-        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
+        notes.append(
+            "Angles were assumed to grow downward and to the subject's right, as in ARKit."
+        )
     unknown = [table.names[number] for number in columns.unknown]
     return whole_take(
         "Live Link Face" if is_known else "Table of named columns",

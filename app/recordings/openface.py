@@ -61,7 +61,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     if any("divided by 5." in note for note in scaling):  # as usual in OpenFace, so no note
         scaling.clear()
     elif not scaling and units:
-        scaling.append("Action units go no higher than 1, and were taken for 0 to 1, not 0 to 5.")
+        scaling.append("Action units are at most 1, and were read as 0 to 1, not as 0 to 5.")
     notes += scaling
     channels |= {name: numbers[name] for name in only_present}
     if only_present:
@@ -100,8 +100,8 @@ def _eyes(
     if not (np.nan_to_num(across).any() or np.nan_to_num(down).any()):
         return {}
     notes.append(
-        "Gaze is as the camera sees it: the head's turn was taken away, and the middle of the "
-        "take looks straight ahead."
+        "Gaze is relative to the camera: the head's rotation was subtracted, and the median gaze "
+        "of the take is straight ahead."
     )
     yaw = np.degrees(across) - head.get("head_yaw", 0.0)
     pitch = -np.degrees(down) - head.get("head_pitch", 0.0)

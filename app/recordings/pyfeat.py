@@ -56,8 +56,8 @@ def read(table: Table, request: TakeRequest) -> Take:
         units_instead = ("AU6", "AU9")
         units = {name: n for name, n in units.items() if name in units_instead}
         notes.append(
-            "Shapes and action units measure the same face twice: the shapes were taken, and AU6 "
-            "and AU9, which the shapes do not have."
+            "Shapes and action units measure the same face: the shapes were used, and AU6 and AU9, "
+            "for which the file has no shapes."
         )
     others = {name: places[name] for name in ("facescore", *POSE) if name in places}
     wanted = units | shapes | others
@@ -86,7 +86,7 @@ def _head(numbers: dict[str, Floats64], is_second: bool, notes: list[str]) -> di
     largest_radians = 1.6  # a visible head turns no further
     is_early = size > largest_radians
     notes.append(
-        f"Angles of the head reach {size:.2g} and were taken for "
+        f"Angles of the head reach {size:.2g} and were read as "
         + ("degrees, pitch + up." if is_early else "radians, pitch + down.")
     )
     scale = 1.0 if is_early else 180.0 / np.pi

@@ -362,13 +362,13 @@ def one_face(table: Table, request: TakeRequest) -> Table:
         return table
     face = request.face or often[0]
     kept = [row for row, cell in enumerate(cells) if cell == face]
-    why = "" if request.face else ", the one seen most"
+    why = "" if request.face else ", the face in most rows,"
     return replace(
         table,
         lines=[table.lines[row] for row in kept],
         line_numbers=[table.line_numbers[row] for row in kept],
         notes=[
             *table.notes,
-            f"{len(counts)} faces are in the file; taken was '{face}'{why} ({len(kept)} rows).",
+            f"{len(counts)} faces are in the file; '{face}'{why} was used ({len(kept)} rows).",
         ],
     )

@@ -255,7 +255,9 @@ def stamp_times(
     for shortest, longest, unit, name in UNITS:
         if shortest <= step < longest:
             return _in_seconds(stamps, unit, name, notes)
-    notes.append(f"The time stamps are {step:g} apart, which no camera is, and were not used.")
+    notes.append(
+        f"The time stamps are {step:g} apart, unlike those of a camera, and were not used."
+    )
     return None
 
 

@@ -101,7 +101,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
     lost = _rows_of_zeros(found)
     if lost.any():
         frames = counted(int(lost.sum()), "frame")
-        notes.append(f"All shapes are 0 in {frames}, as where no face is seen.")
+        notes.append(f"All shapes are 0 in {frames}, as in frames without a face.")
         found = without_rows(found, lost)
     return found
 

@@ -187,7 +187,7 @@ class Display(Record):
             scene_light(self.light)
         except UserError as error:
             self.light = Display.light
-            return f"{error}; the light is as at first"
+            return f"{error}; the default light is used"
         return ""
 
     def remove_missing_overlays(self, scene: Drawable) -> None:
@@ -285,9 +285,9 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     except NoSuchFileError:
         return Settings(), ""
     except UserError as error:
-        return Settings(), f"{error}; all is as at first"
+        return Settings(), f"{error}; the defaults are used"
     except ValueError as error:
-        return Settings(), f"{path}: {error}; all is as at first"
+        return Settings(), f"{path}: {error}; the defaults are used"
     settings, refused = read_what_fits(Settings, stored)
     if not refused:
         return settings, ""
@@ -295,7 +295,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     reported = refused[:most_reported]
     if len(refused) > most_reported:
         reported.append(f"{len(refused) - most_reported} more")
-    return settings, in_one_line(f"{path}: as at first: {'; '.join(reported)}")
+    return settings, in_one_line(f"{path}: defaults replace: {'; '.join(reported)}")
 
 
 def save_settings(path: Path, settings: Settings) -> None:

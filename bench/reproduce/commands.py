@@ -90,9 +90,9 @@ def _page(results: Sequence[Result]) -> str:
     title = "Dynamically refined animated triangle meshes, repeated"
     about = """\
 Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the paper: its numbers,
-and those that this program measures. Times are medians. Met: the number lies within the tolerance,
-which is ours where the paper has words alone. Differs: the number is not as the paper says, for the
-reason that stands below the table. MISSED: the number lies outside. A level is 1/255 of the
+and those that this program measures. Times are medians. Met: the number lies within the tolerance;
+where the paper gives no number, the tolerance is ours. Differs: the number differs from the paper,
+and the reason is below the table. MISSED: the number lies outside. A level is 1/255 of the
 brightness of a channel."""
     style = (
         "body { max-width: 80rem; margin: auto } img { max-width: 100% } pre { overflow-x: auto }"

@@ -31,13 +31,13 @@ from .surface_normals import RefinedNormals
 
 CriterionLike = str | Criterion | Sequence[str | Criterion]
 WHICH_EDGES = Option(
-    "decides which edges split; normal: where the mesh bends (the paper's), rest: where it is "
-    "round at rest, so that outlines are, displacement: where the scheme moves edges"
+    "chooses the split edges; normal: where the mesh bends (the paper's), rest: where it is curved "
+    "at rest, for round outlines, displacement: where the scheme moves edges"
 )
-GROWING = Option("new points grow out of the edge, and nothing pops")
+GROWING = Option("new points move gradually out of edges, so nothing pops")
 LIT_BY = Option(
-    "those that light uses; linear: of the mesh, in between (the paper's), refined: of the "
-    "refined surface"
+    "normals for shading; linear: interpolated on the mesh (the paper's), refined: of the refined "
+    "surface"
 )
 IN_ORDER = Option(
     "triangles are cut in the order in which their edges split, and no line turns; for flat shading"

@@ -167,9 +167,7 @@ def _check_same_places(mesh: RefinedMesh, points: Integers64) -> None:
 def _check_sources(mesh: RefinedMesh, proper: Flags) -> None:
     counts = np.bincount(mesh.source, minlength=len(proper))
     _require_all(counts > 0, "every input triangle is part of the output")
-    _require_all(
-        proper | (counts == 1), "an input triangle that names a vertex twice is handed through"
-    )
+    _require_all(proper | (counts == 1), "an input triangle that names a vertex twice is passed on")
 
 
 def _places_in_source(

@@ -55,8 +55,8 @@ Levels = Annotated[int, Option("most splits of an edge; 0: this criterion splits
 DropOnce = Annotated[
     float,
     Option(
-        "an edge splits once where the normals at its ends have turned apart by more than this "
-        "since rest (drop of their dot product)",
+        "an edge splits once if the dot product of the normals at its ends has dropped by more "
+        "than this since rest",
         least=0.0,
     ),
 ]

@@ -67,7 +67,7 @@ def test_values_that_are_none(tmp_path):
 def test_units_of_angles(name, unit, tmp_path):
     """The unit of angles is found from their size: no head turns by over 90 degrees."""
     take = take_in(tmp_path, live_link(unit=unit))
-    assert has_note(take.notes, f"taken for {name}")
+    assert has_note(take.notes, f"read as {name}")
     known = live_link()
     for ours, theirs in (("head_yaw", "HeadYaw"), ("eye_pitch_left", "LeftEyePitch")):
         there = -np.degrees(np.array(known[theirs], dtype=float))

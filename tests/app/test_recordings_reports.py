@@ -90,7 +90,7 @@ def test_one_of_a_kind(tmp_path):
     jaw[40] = 50.0
     report = lines_of(written(tmp_path / "take.csv", {"time": times, "jawOpen": jaw}))
     assert "Rows are missing in 1 place, " in report
-    assert "1 row without a time of their own was left out" in report
+    assert "1 row without a time was left out" in report
     assert "1 cell holds no usable number" in report
     assert "1 value of shapes is far from 0 to 1 and was left out" in report
 

@@ -188,8 +188,8 @@ def test_a_quote_that_is_not_closed(tmp_path, is_first):
     ("header", "note"),
     [
         ("time,jawOpen,jawOpen", "have one name, and the first of each counts: 'jawOpen'"),
-        ("time,jawOpen,JawOpen", "holds the same, and these were left out: 'JawOpen'"),
-        ("time,jawOpen,jaw_open", "holds the same, and these were left out: 'jaw_open'"),
+        ("time,jawOpen,JawOpen", "repeat another column, and were left out: 'JawOpen'"),
+        ("time,jawOpen,jaw_open", "repeat another column, and were left out: 'jaw_open'"),
         ("time,AU12,AU12", "have one name, and the first of each counts: 'AU12'"),
         ("time,AU12_r,AU12_r", "have one name, and the first of each counts: 'AU12_r'"),
     ],

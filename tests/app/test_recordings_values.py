@@ -232,7 +232,7 @@ def test_unknown_keys_of_json_are_reported(tmp_path):
     take = of_json(tmp_path, frames)
     assert take.unknown == ("emotion",)
     assert take.channels["jawOpen"][3] == 0.25
-    assert has_note(take.notes, "these were left out: 'JawOpen'")
+    assert has_note(take.notes, "repeat another name, and were left out: 'JawOpen'")
 
 
 @pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])

@@ -83,7 +83,7 @@ def test_one_wrong_value_gets_its_default(path, where, value):
         expected.display.options = {"kahler": {}}
     assert settings == expected
     place = ", ".join(map(repr, where.split(".")))
-    assert complaint.startswith(f"{path}: as at first: {place}")
+    assert complaint.startswith(f"{path}: defaults replace: {place}")
     assert "must be " in complaint
     save_settings(path, settings)
     assert load_settings(path) == (settings, "")
@@ -148,7 +148,7 @@ def test_a_full_disk_is_reported_and_closes_the_window(path, monkeypatch, caplog
         monkeypatch.setattr(Path, "write_text", full)
     assert [record.getMessage() for record in caplog.records] == [
         f"risorius: {path}: cannot be written: No space left on device; "
-        "the next window does not look as this one"
+        "the next window opens without these settings"
     ]
     assert path.read_text() == '{"theme": "dark"}'
     recovery = Recovery(path.parent, viewer.session)

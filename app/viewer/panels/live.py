@@ -25,7 +25,7 @@ HINTS = {
     "Listen to": "a phone needs the whole network; every computer in it can then move this face, "
     "and do nothing else",
     "Port": "the port to which the sender must send",
-    "Gain": "how strongly shapes are taken",
+    "Gain": "factor on all received shapes",
 }
 
 
@@ -123,13 +123,13 @@ def state_in_words(face: LiveFace | None) -> str:
     if face.state is State.NO_FACE:
         return f"{who.strip() or 'the sender'} sees no face"
     if face.state is State.LOST:
-        return f"lost{who}: nothing comes any more"
+        return f"lost{who}: packets have stopped"
     if face.received:
         return (
-            f"something comes to port {face.port}, but no face of {face.listening.protocol.title}: "
+            f"packets arrive at port {face.port}, but no face of {face.listening.protocol.title}: "
             "is the protocol right?"
         )
-    return f"waiting on port {face.port}: nothing has come yet"
+    return f"waiting on port {face.port}: no packet yet"
 
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:

@@ -36,7 +36,7 @@ HINTS = {
     "Beside": "at the left of a comparison: static, the simulated mesh as it is, or a look",
     "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
     "Wires of splits": "outlines of simulated triangles that are split more than at rest",
-    "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
+    "Wrinkles": "their depth where the simulated skin is compressed; only pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
@@ -92,11 +92,11 @@ class MechanismPanel:
         if not is_first:
             self._before_reset = None
         elif self._before_reset is not None:
-            if button(self._gui, "Undo reset", meaning="all of this as it was before"):
+            if button(self._gui, "Undo reset", meaning="all these settings as they were before"):
                 self._settings.display = self._before_reset
             return
         imgui.begin_disabled(is_first)
-        if button(self._gui, "Reset all", meaning="all of this as at first"):
+        if button(self._gui, "Reset all", meaning="the defaults of all these settings"):
             self._before_reset = self._display
             self._settings.display = at_first
         imgui.end_disabled()

@@ -23,7 +23,7 @@ from .people import PeopleList
 
 OTHER_MAP = "Map ..."
 HINTS = {
-    "Light": "hangs on the camera; the shadow follows the key. Map: a file .hdr or .exr with the "
+    "Light": "moves with the camera; the shadow follows the key. Map: a file .hdr or .exr with the "
     "light from all directions",
     "Background": "theme: of the window's colours; map: the map of light behind the head, of "
     "clouds, room, street or a file",

@@ -164,7 +164,7 @@ class SkinDrag:
             if value != present[name]:
                 self._session.set(name, value)
         if not solved:
-            return "No muscle draws the skin this way; with Ctrl it is pulled all the same"
+            return "No muscle moves the skin this way; with Ctrl it is pulled without muscles"
         moved = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
         return f"{', '.join(moved).capitalize()}; {pull.short:.1f} mm short of the mouse"
 

@@ -205,7 +205,7 @@ class Session:
             return None
         controls = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
         self.history.note(self._document())
-        return f"{controls} not keyed, so let go; [Undo] brings the pose back"
+        return f"{controls} not keyed, so released; [Undo] restores the pose"
 
     def seek_key(self, direction: int) -> Message:
         """Go to the next time with a key, or with -1 to the previous time, and pause."""

@@ -375,7 +375,7 @@ class DopeSheet:
         line = None
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.all_keys(drag.script)) - len(keyframes.all_keys(session.script))
-            line = f"{counted(lost, 'key')} replaced; [Undo] brings back" if lost > 0 else None
+            line = f"{counted(lost, 'key')} replaced; [Undo] restores them" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
                 self.selection.keys = drag.selected | self._grabbed

@@ -142,7 +142,7 @@ class KeySelection:
         """Delete the keys at the current time in the tracks of these controls."""
         session = self._session
         session.edit(keyframes.without(session.script, self.keys_of(names)))
-        return f"{listed(names)}: key deleted; [Undo] brings back"
+        return f"{listed(names)}: key deleted; [Undo] reverts this"
 
     def clear_tracks_of(self, names: Collection[str]) -> Message:
         """Delete all keys in the tracks of these controls."""
@@ -150,13 +150,13 @@ class KeySelection:
         tracks = session.script.tracks
         deleted = KeySet({name: tracks[name].times for name in names if name in tracks})
         session.edit(keyframes.without(session.script, deleted))
-        return f"{listed(names)}: track cleared; [Undo] brings back"
+        return f"{listed(names)}: track cleared; [Undo] reverts this"
 
     def delete(self) -> Message:
         """Delete the selected keys."""
         keys = counted(len(self.keys), "key")
         self._session.edit(keyframes.without(self._session.script, self.keys))
-        return f"{keys} deleted; [Undo] brings back"
+        return f"{keys} deleted; [Undo] reverts this"
 
     def copy(self) -> Message:
         """Copy the selected keys for pasting."""

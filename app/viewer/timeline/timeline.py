@@ -24,7 +24,7 @@ BUTTON_TEXTS = {
         "key the controls moved since the last key ([Set key]), or the whole "
         "pose ([Key whole pose])",
     ),
-    "Let go": ("Let go", "controls changed by hand go back to where the script has them"),
+    "Let go": ("Let go", "controls changed by hand return to the values of the script"),
     "Auto-key": ("Auto-key", "each change by hand becomes a key at once"),
 }
 

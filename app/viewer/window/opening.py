@@ -53,7 +53,7 @@ def without_refused_options(display: Display, scene: Scene) -> str:
         _refine_once(scene, display)
     except UserError as error:
         display.choose_preset(display.look)
-        return f"{error}; as at first"
+        return f"{error}; the defaults are used"
     return ""
 
 

@@ -314,7 +314,7 @@ class Viewer:
             self.remember()
         except UserError as error:  # a full disk must not keep the window open
             log = logging.getLogger("risorius.viewer")  # reports after the window has closed
-            log.warning("risorius: %s; the next window does not look as this one", error)
+            log.warning("risorius: %s; the next window opens without these settings", error)
         self.context.live.stop()
         self.exporter.close()
         self.leave_marking()

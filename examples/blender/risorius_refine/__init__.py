@@ -201,7 +201,10 @@ class RisoriusSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     blend: bpy.props.BoolProperty(
-        name="Blend", description="New points grow, so nothing pops", default=True, update=changed
+        name="Blend",
+        description="New points move gradually, so nothing pops",
+        default=True,
+        update=changed,
     )
     problem: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
 

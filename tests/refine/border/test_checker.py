@@ -175,7 +175,7 @@ def test_lost_degenerate_triangle():
     mesh = meshes.with_debris()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
     check_breaks(
-        "names a vertex twice is handed through",
+        "names a vertex twice is passed on",
         refiner,
         double_degenerate(refiner.refine(mesh.vertices)),
         mesh.vertices,
