@@ -1,6 +1,6 @@
 """Smooth edges like `sample_mixer.py`, but by kernels on the processor, for software OpenGL.
 
-Software OpenGL would sample every pixel that a triangle touches, which takes a third of the time of
+Software OpenGL would sample every pixel that a triangle touches; this takes a third of the time of
 a picture. These kernels sample only edge pixels, about one pixel in fifty. No copy between two
 memories is needed, because software OpenGL keeps the picture in main memory.
 """

@@ -1,4 +1,4 @@
-"""Lend buffers for triangles that change every frame to the code that makes the triangles.
+"""Lend buffers to the code that makes the triangles of each frame.
 
 The borrower writes the first rows of `vertices`, `triangles` and `source`; `upload` passes exactly
 these rows to OpenGL. No memory is allocated per frame. Alternatively, the OpenGL buffers themselves

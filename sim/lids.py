@@ -8,16 +8,15 @@ motion of the open lid (`fold`). It turns by
     close closing + (1 - close) fold (raise + gaze)
 
 so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. All
-skin between the front edges of the lids moves to one line. A margin is as thick as skin, so lids
-that met with a slanted margin would leave a groove, in which the cornea shows. The open lid moves
-the fold under the brow along, because levator palpebrae inserts in both. The fold is held only
-while it moves, so that the brow can come down on it. A closed upper lid is held twice as firmly,
-because its muscle presses it down; so a rising brow does not open it. A closing lid slides towards
-the nose, where its ring of fibres is fixed. A raised lid slides a little away from the nose. Both
-lids follow the gaze a little to the side, because the cornea draws them. The lids of each eye
-follow the gaze of that eye alone. The turn fades from the margin to the edge of the lid. The turn
-moves the far ends of the tissue springs instead of the skin, so skin still slides and is still kept
-off the eyeball.
+skin between the front edges of the lids moves to one line. A margin is as thick as skin: shut lids
+with slanted margins would leave a groove, and show the cornea. The open lid moves the fold under
+the brow along, because levator palpebrae inserts in both. The fold is held only while it moves, so
+that the brow can come down on it. A closed upper lid is held twice as firmly, because its muscle
+presses it down; so a rising brow does not open it. A closing lid slides towards the nose, where its
+ring of fibres is fixed. A raised lid slides a little away from the nose. Both lids follow the gaze
+a little to the side, because the cornea draws them. The lids of each eye follow the gaze of that
+eye alone. The turn fades from the margin to the edge of the lid. The turn moves the far ends of the
+tissue springs instead of the skin, so skin still slides and is still kept off the eyeball.
 
 Source: own; the papers close the eye by a sphincter, and skin then does not follow the eyeball.
 Angles from the visible lid margins.

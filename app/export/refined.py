@@ -82,8 +82,8 @@ class RefinedClip:
 def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
     """Refine the skin of a clip into one mesh that moves.
 
-    Raises UserError for a refiner that takes no splits and whose triangles change, and all errors
-    of `Clip.refined`.
+    Raises UserError for a refiner with changing triangles and no option `splits`, and all errors of
+    `Clip.refined`.
     """
     counts = []
     splits = np.zeros(0, np.uint8)

@@ -78,7 +78,7 @@ def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
 
 
 def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> None:
-    """Add a mesh with constant triangles, whose points move, or which moves as a whole."""
+    """Add a mesh with constant triangles; its points move, or the mesh moves as a whole."""
     _set_faces(mesh, surface.faces, ALWAYS)
     if surface.shapes is None:
         _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALWAYS)

@@ -64,7 +64,7 @@ class Skin:
 class PartBody:
     """A part of a scene, such as an eyeball, teeth or hair.
 
-    bone: name of the part's node, which is the cranium, or the bone that moves the whole part.
+    bone: name of the part's node: the cranium, or the bone that moves the whole part.
     """
 
     part: Any

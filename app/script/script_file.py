@@ -184,7 +184,7 @@ def save_script(target: Path, script: Script) -> None:
 def script_text(script: Script, folder: Path | None = None) -> str:
     """Return the TOML text of a script; folder: folder of the file, for relative paths.
 
-    Raises UserError for a sound whose name is not UTF-8, which TOML requires.
+    Raises UserError for a sound whose name is not UTF-8: TOML requires UTF-8.
     """
     head = [as_text(script.preface)] if script.preface else []
     if script.title:  # without a title the file's name is used

@@ -221,7 +221,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
 def _over_skin(
     way: Points, points: Points, normals: Points, scalp: Scalp, long: Floats64
 ) -> Points:
-    """Raise strands that would enter the skin ahead of them, which is hollow behind ears.
+    """Raise strands that would enter the skin ahead of them: skin is hollow behind ears.
 
     way: vectors from roots to tips [mm], (n, 3). points: roots on the skin [mm], (n, 3). normals:
     unit normals there, (n, 3). long: lengths of strands [mm], (n,). Returns new vectors, (n, 3).

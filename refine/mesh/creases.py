@@ -1,7 +1,7 @@
 r"""Creases: edges that stay sharp because the surface turns sharply there at rest.
 
-    crease      an interior edge whose two triangles, at rest, look in directions that are farther
-                apart than the crease angle: 90 degrees along the edges of a cube, 0 in a plane
+    crease      an interior edge between two triangles whose normals at rest form an angle above the
+                crease angle; this angle is 90 degrees along a cube's edges, and 0 in a plane
 
 It is treated as a border on both sides (connectivity.py): its rules read only its two ends, or its
 curve. So no crack can open, and no rule rounds it.
@@ -9,9 +9,9 @@ curve. So no crack can open, and no rule rounds it.
 A vertex on a crease has several *sectors*, the triangles around it between one crease and the next:
 
            \  1 /         three creases that meet, and three sectors; curves of edges within a
-            \  /          sector go by the normal of that sector only
+            \  /          sector depend on the normal of that sector only
          0   \/   2
-             |            A crease that ends here has one sector, which is all around.
+             |            The end of a crease has one sector, all around.
              |
 """
 

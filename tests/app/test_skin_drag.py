@@ -22,9 +22,9 @@ SIGHT = np.array([0.0, 0.0, -1.0])  # from the front
 def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwanted):
     """The lip or lid beyond an opening stays, and no control works against the finger.
 
-    The finger pulled skin within 16 mm through the air. So an upper lid that was pulled up tensed
-    the lower one, and a lower lip that was pulled down rolled in the upper one. A chin
-    that was pulled down also thrust the jaw forward, which lifts the chin.
+    The finger pulled skin within 16 mm through the air. So a pull at an upper lid tensed the lower
+    one, and a pull at a lower lip rolled in the upper one. A pull at the chin also thrust the jaw
+    forward, which lifts the chin.
     """
     scene = session.scene
     place = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)

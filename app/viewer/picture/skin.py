@@ -170,10 +170,10 @@ class SkinDrag:
 
 
 def _touched(simulation: sim.Simulation, point: Floats64, sight: Floats64, near: Flags) -> Flags:
-    """Return which of the vertices near a point (V,) a finger touches that comes along `sight`.
+    """Flag the vertices near a point that a finger along `sight` touches, shape (V,).
 
-    A short path over skin that faces the viewer joins them to the point: a finger on one lip or lid
-    does not touch the other one.
+    A short path over skin that faces the viewer joins them to the point, so a finger on one lip or
+    lid does not touch the other one.
     """
     longest = 24.0  # [mm] along edges
     positions = simulation.positions

@@ -344,7 +344,7 @@ class Work:
         self._session = session
 
     def open(self, script: Script) -> None:
-        """Show a pose, which a recording records, or show a script, which ends a recording."""
+        """Show a pose or a script; a recording records the pose, and ends with a script."""
         if is_pose(script):
             pose = script.values(0.0, self._session.scene.limits)
             self._session.set_pose(pose, is_unsaved=False)
