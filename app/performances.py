@@ -102,7 +102,9 @@ def options_in(playback: Playback) -> str:
     """Return the command-line name of the first option that differs from its default."""
     usual = Playback()
     first = next(
-        f.name for f in fields(playback) if getattr(playback, f.name) != getattr(usual, f.name)
+        field.name
+        for field in fields(playback)
+        if getattr(playback, field.name) != getattr(usual, field.name)
     )
     return f"--{first.removesuffix('s')}"
 

@@ -76,7 +76,9 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         file=head_file,
         rig=read_toml(RIG_FILE),
-        layers=tuple(Layer(title, p.name, read_toml(p)) for title, p in LAYER_FILES.items()),
+        layers=tuple(
+            Layer(title, path.name, read_toml(path)) for title, path in LAYER_FILES.items()
+        ),
     )
 
 

@@ -170,7 +170,7 @@ def flipped(start: Layout, first: int, second: int) -> Layout | None:
     beside = np.flatnonzero((triangles == first).any(axis=1) & (triangles == second).any(axis=1))
     if len(beside) != 2 or not np.isin(start.groups[beside], FREE_GROUPS).all():
         return None
-    rows = [list(triangles[t]) for t in beside]
+    rows = [list(triangles[number]) for number in beside]
     if rows[0][(rows[0].index(first) + 1) % 3] != second:
         rows.reverse()
         beside = beside[::-1]

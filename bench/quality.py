@@ -244,4 +244,7 @@ def targets(scores: Sequence[Score]) -> list[Target]:
     names = ("distance", "picture")
     gains = {name: _gain(average[BEST], average[STATIC], name) for name in names}
     least_gain = 20.0  # [%] of the error of static
-    return [at_least(f"{n}: less than static", g, least_gain, " %") for n, g in gains.items()]
+    return [
+        at_least(f"{name}: less than static", gain, least_gain, " %")
+        for name, gain in gains.items()
+    ]

@@ -184,7 +184,7 @@ def _waving_cases(load: Load) -> list[_Case]:
     # Percentage of split edges -> quantiles of the drops for the two thresholds.
     thresholds = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
     for percent, quantiles in thresholds.items():
-        once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
+        once, twice = (max(0.0, float(np.quantile(drops, quantile))) for quantile in quantiles)
         title = f"kahler {percent} %"
         limits = {"threshold_once": once, "threshold_twice": twice}
         cases.append(_own(title, load, "kahler", **limits))

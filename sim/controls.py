@@ -239,8 +239,10 @@ class MuscleDrive:
         self._own = controls.places_in_reached(names)
         wholes = [name.removesuffix("_left").removesuffix("_right") for name in names]
         drive = {muscle.name: muscle.drive for muscle in rig.muscles}
-        self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
-        self._whole = controls.places_in_reached(w if w in halved else "" for w in wholes)
+        self._power = rig.tissue.drive_power * np.array(
+            [drive[name] for name in wholes], np.float64
+        )
+        self._whole = controls.places_in_reached(name if name in halved else "" for name in wholes)
 
     def activation(self) -> Floats64:
         """Activation 0..1 of each muscle, (M,): its own control plus the one for both halves."""

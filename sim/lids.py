@@ -127,7 +127,7 @@ def _lid_vertices(
     hold = eyes.lid_stiffness * areas * joined.weight
     vertices = LidVertices(
         vertex=joined.vertex.astype(np.int32),
-        eye=np.repeat(np.arange(len(parts)), [len(p.vertex) for p in parts]).astype(np.int32),
+        eye=np.repeat(np.arange(len(parts)), [len(part.vertex) for part in parts]).astype(np.int32),
         upper=joined.upper,
         closing=joined.closing,
         overlap=joined.overlap,

@@ -208,7 +208,9 @@ def backgrounds_of(text: str | None) -> Backgrounds:
     folder = Path(text)
     if folder.is_dir():
         suffixes = (".png", ".jpg", ".jpeg", ".webp")
-        pictures = tuple(sorted(p for p in folder.iterdir() if p.suffix.lower() in suffixes))
+        pictures = tuple(
+            sorted(path for path in folder.iterdir() if path.suffix.lower() in suffixes)
+        )
         if not pictures:
             raise UserError(
                 f"--background {text}: the folder has no picture ({', '.join(suffixes)})"

@@ -226,7 +226,9 @@ class Script:
     @functools.cached_property
     def _pose_rows(self) -> Floats64:
         """The values of the `posed_names`, a row for each pose."""
-        return np.array([[p.values.get(n, 0.0) for n in self.posed_names] for p in self.poses])
+        return np.array(
+            [[pose.values.get(name, 0.0) for name in self.posed_names] for pose in self.poses]
+        )
 
     @functools.cached_property
     def _placed_tracks(self) -> tuple[tuple[int, Channel], ...]:

@@ -124,8 +124,11 @@ def raised(
     tracks = dict(script.tracks)
     for name, times in chosen.times.items():
         if name == POSES:
-            at = set(times.tolist())
-            poses = tuple(p.raised(posed, amount, limits) if p.time in at else p for p in poses)
+            chosen_times = set(times.tolist())
+            poses = tuple(
+                pose.raised(posed, amount, limits) if pose.time in chosen_times else pose
+                for pose in poses
+            )
         else:
             low, high = limits[name]
             if name in script.posed_names:  # a track may then add up to the whole range

@@ -249,7 +249,10 @@ def _track(name: str, channel: Channel) -> str:
     # A table of more keys would be too long for readers.
     if len(channel) > 24:
         parts = (channel.times.tolist(), channel.values.tolist(), channel.easing_rows())
-        keys = "\n".join(f"{t!r} {v!r}{_ending(e)}" for t, v, e in zip(*parts, strict=True))
+        keys = "\n".join(
+            f"{time!r} {value!r}{_ending(easing)}"
+            for time, value, easing in zip(*parts, strict=True)
+        )
         return f"{_key(name)} = '''\n{keys}\n'''"
     lines = [f"{_key(name)} = ["]
     for key in channel.keys:

@@ -251,7 +251,9 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
     width = min(max(each.shape[1] for each in pictures), LARGEST // len(pictures))
     height = max(each.shape[0] for each in pictures)
     if len(pictures) > 1:
-        tiles = [np.asarray(PIL.Image.fromarray(p).resize((width, height))) for p in pictures]
+        tiles = [
+            np.asarray(PIL.Image.fromarray(picture).resize((width, height))) for picture in pictures
+        ]
         pictures = [np.hstack(tiles)]
     corners = texture.uv.astype(np.float64)[texture.face_uv[faces]]
     corners -= np.floor(corners.mean(axis=1, keepdims=True))  # texture coordinates wrap around

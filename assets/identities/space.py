@@ -217,7 +217,9 @@ def person_space() -> PersonSpace:
     ]
     slopes = np.array([[more[code] - less[code] for more, less in sides] for code in NORMS])
     named = [point for point, *_ in POINTS]
-    numbers = [head.landmarks[p] if isinstance(p, int) else head.anatomy[p] for p in named]
+    numbers = [
+        head.landmarks[point] if isinstance(point, int) else head.anatomy[point] for point in named
+    ]
     directions = np.array([direction for _, direction, *_ in POINTS], dtype=np.float64)
     directions = unit_vectors(directions)
     corner = modes[:, head.anatomy["exocanthion_left"]] * [0.0, 1.0, 1.0]

@@ -134,7 +134,10 @@ class Graph:
 
     def handle_at(self, x: float, y: float) -> Handle | None:
         """Return the handle at a place, or None."""
-        away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
+        away = [
+            (float(np.hypot(handle.place[0] - x, handle.place[1] - y)), handle)
+            for handle in self.handles()
+        ]
         distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
         return handle if distance < em(self.MOUSE_REACH) else None
 

@@ -83,11 +83,13 @@ class TimeAxis:
         labelled = next(wide, TICK_STEPS[-1])
         least_tick_ratio = 0.12  # distance of ticks, relative to a label's width
         least = self.seconds(least_tick_ratio * label_width)
-        parts = ((s, labelled / s) for s in TICK_STEPS if least <= s < labelled)
-        finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # divides evenly
+        parts = ((step, labelled / step) for step in TICK_STEPS if least <= step < labelled)
+        finer = [
+            step for step, count in parts if abs(count - round(count)) < 1e-6
+        ]  # divides evenly
         marked = finer[0] if finer else labelled
         count = round(labelled / marked)
-        first, last = (int(t / marked) for t in (self.start, self.end))
+        first, last = (int(time / marked) for time in (self.start, self.end))
         return [
             (number * marked, number % count == 0)
             for number in range(first, last + 1)

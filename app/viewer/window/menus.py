@@ -186,7 +186,10 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1), begins_section=True),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
-        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
+        *(
+            change(f"Easing: {name}", "", partial(ease, name), partial(is_eased, name))
+            for name in EASINGS
+        ),
     )
 
 
