@@ -41,7 +41,7 @@ _readings = Counter[str]()  # by name: how often `open_light` has read a map
 def scene_light(name: str) -> SceneLight:
     """Return the light of a name: one of `render.LIGHTS`, or the path of a light map.
 
-    A file is read once, until `open_light` reads it again, or many others have been used since.
+    A file is read once. It is read again after `open_light`, or after many other maps were used.
     Raises UserError for an unusable file.
     """
     return _light_of(name, _readings[name])

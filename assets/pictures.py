@@ -94,7 +94,7 @@ def material_key(material: str, known: Container[str]) -> str:
 
 
 def libraries_of(lines: Sequence[str], folder: Path) -> list[str]:
-    """The libraries of `mtllib` lines: one name with blanks in it, or several names."""
+    """The libraries of `mtllib` lines; a line has one name with blanks, or several names."""
     found = []
     for line in lines:
         names = line.partition(" #")[0].split()

@@ -83,7 +83,7 @@ def plain_text(content: bytes) -> bytes:
 
 
 def text_with_names(content: bytes) -> bytes:
-    r"""Text in UTF-16 (with its mark), UTF-8 or else Latin-1, as UTF-8 with lines that end in \n.
+    r"""Decode UTF-16 (with its mark), UTF-8 or else Latin-1; return UTF-8 with line ends \n.
 
     Raises AssetError for binary data.
     """

@@ -149,7 +149,7 @@ def meshes_of(
 
 
 def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
-    """Greatest height [mm] of a slit between the lips that is visible in any of VIEWS.
+    """Greatest height [mm] of a visible slit between the lips, in any of VIEWS.
 
     landmarks: the 68 points in this pose, (68, 3) [mm].
     """

@@ -40,7 +40,7 @@ class Pair(NamedTuple):
     first: float
     """Time of a frame in the first way, median [ms]."""
     second: float
-    """The same in the second way."""
+    """Time of a frame in the second way, median [ms]."""
     gain: float
     """Ratio of the first time to the second in a pair, median of the pairs."""
 

@@ -45,9 +45,9 @@ SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 
 @contextlib.contextmanager
 def face_tracker(model: Path) -> Iterator[Tracker]:
-    """Open a tracker: a function from a picture (H, W, 3) to all shapes' scores, {} without a face.
+    """Open a tracker: a function from a picture (H, W, 3) to the scores of all shapes.
 
-    Raises UserError as `face_landmarker` does.
+    Without a face the scores are {}. Raises UserError as `face_landmarker` does.
     """
     with face_landmarker(model, output_face_blendshapes=True) as look:
 

@@ -173,7 +173,7 @@ class Kinds:
 
 
 def called(key: str) -> Any:
-    """The rule for a field with another key in files."""
+    """Declare that a field has the name `key` in files."""
     return Field(alias=key)
 
 

@@ -51,9 +51,9 @@ class Anatomy:
         return self._in_head(self._model.muscles.lines(pull, self._bones.mandible, self._state))
 
     def courses(self) -> dict[str, list[Floats64]]:
-        """Where muscles run now, to draw: control name -> polylines (n, 3) [head units].
+        """Lines along the muscles now, for drawing: control name -> polylines (n, 3) [head units].
 
-        Insertions stay in the skin, which follows only a part of a contraction.
+        Their ends stay in the skin, although skin follows only a part of a contraction.
         """
         model = self._model
         muscles = model.muscles

@@ -123,10 +123,10 @@ class MuscleForces:
     def courses(
         self, mandible: RigidMotion, moved_skin: Floats64, held: Sequence[LineHold]
     ) -> dict[str, list[Floats64]]:
-        """Polylines [mm] of linear muscles where they run now: from bone to the skin they move.
+        """Lines along linear muscles now, from the bone to the moved skin: polylines [mm].
 
         moved_skin: displacement of the skin [mm], shape (V, 3). held: see `holds_of_lines`.
-        Lines contracted without resistance would end before the skin.
+        The contracted fibres of `lines` end before the skin.
         """
         lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
         rings = dict(self.rings)

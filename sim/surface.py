@@ -57,7 +57,7 @@ class SkinSurface:
         return np.asarray(self.tree.query(points)[1], dtype=np.int32)
 
     def distances_from(self, vertices: Integers64) -> Floats64:
-        """Length of the shortest path from some vertices along edges [mm], (V,); else inf."""
+        """Lengths of shortest paths along edges from some vertices [mm], (V,); inf without path."""
         graph = self.graph.matrix(self.lengths)
         distance = csgraph.dijkstra(graph, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)

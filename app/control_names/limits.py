@@ -54,7 +54,7 @@ class Limits(dict[str, tuple[float, float]]):
     def posed(
         self, places: Places, sums: Floats64, over: ControlValues | None = None
     ) -> ControlValues:
-        """Do the same as `pose`, with indices instead of names; places, sums: shape (n,)."""
+        """Return the result of `pose` for indices instead of names; places, sums: shape (n,)."""
         numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
         numbers[places] = self.cut_off(sums, places)
         return ControlValues(self, numbers)

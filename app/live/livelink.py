@@ -69,7 +69,7 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
-    """Return the packet that Live Link Face sends for these channels; a missing one is 0."""
+    """Return Live Link Face's packet for these channels; missing channels are 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
         degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)

@@ -70,7 +70,7 @@ class Stamp:
 
 
 def stamp_of(name: str) -> Stamp | None:
-    """Return the time stamp that a name of a column or key means; None for other names."""
+    """Return the kind of time stamp under a column's or key's name; None for other names."""
     letters = letters_of(name)
     stamp_names = (
         "timestamp",

@@ -231,7 +231,7 @@ def _across_and_around(
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:
-    """Remove a bag behind the lips, which the built-in mouth replaces; skin: face space [mm]."""
+    """Remove a bag behind the lips: the built-in mouth replaces it; skin: in face space [mm]."""
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
     graph = length_graph(skin.vertices, skin.faces)

@@ -46,7 +46,7 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
 
 
 def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Integers64:
-    """Return the order of triangles (F,) in which those that fade come last.
+    """Return the order of triangles, (F,), with all fading triangles last.
 
     Skin is blended in this order, so that a chin behind a fading neck shows through.
     """

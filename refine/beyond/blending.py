@@ -18,8 +18,8 @@ the middle needs no diagonal:
               2             one edge     C = 2/3 m + 1/3 corner 2: on the line m-2, which is there
              /|\                         without C, so that nothing moves when it appears;
             / | \           two edges    C = 1/2 m + 1/2 m': on the line between them. Along a fold
-           /  |  \                       that is the surface, and lines from C to the corners would
-          /   C...m'                     be gutters, as between the scales of a fish;
+           /  |  \                       this line is the surface; lines from C to the corners
+          /   C...m'                     would be gutters, as between the scales of a fish;
          / .  |  . \        three edges  C = sum of 1/3 corner + 4/9 displacement: middle of a cubic
         0-----m-----1                    patch (the sixth part of its six inner points; Vlachos et
                                          al. 2001, "Curved PN triangles", give the same).
@@ -28,7 +28,7 @@ Here m is the middle of a split edge, and its displacement is the vector from th
 >= g2 >= g3 be the geomorph weights of the edges. C is a weighted mean of the three rules, and of
 the first rule averaged over all edges:
 
-    1 - g1  of all at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
+    1 - g1  of all edges at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
 
 A triangle with two or more splits needs one more point and two more subtriangles than in the paper.
 
@@ -170,8 +170,10 @@ def number_centres(
 
 
 @njit
-def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.float32, np.float32]:
-    """Return the weight of the rule of one edge, and of the rule of two, for the edge `own`."""
+def rule_weights(
+    own: np.float32, other: np.float32, third: np.float32
+) -> tuple[np.float32, np.float32]:
+    """Return the weights of the rules for one and for two edges, for the edge `own`."""
     rival = max(other, third)
     return max(own - rival, ZERO), min(own, rival) - min(own, other, third)
 
@@ -185,9 +187,9 @@ def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, 
     """
     all_three = min(x, y, z)
     none = ONE - max(x, y, z)
-    one_x, pair_x = beyond(x, y, z)
-    one_y, pair_y = beyond(y, z, x)
-    one_z, pair_z = beyond(z, x, y)
+    one_x, pair_x = rule_weights(x, y, z)
+    one_y, pair_y = rule_weights(y, z, x)
+    one_z, pair_z = rule_weights(z, x, y)
     of_edges = (
         TWO_THIRDS * (none + one_x) + HALF * pair_x + FOUR_NINTHS * all_three,
         TWO_THIRDS * (none + one_y) + HALF * pair_y + FOUR_NINTHS * all_three,

@@ -126,7 +126,7 @@ def _input_faces(refiner: Refiner) -> Integers64:
 
 
 def _rounded(origins: Origins) -> _Places:
-    """Places in whole parts."""
+    """Round weights to whole parts; raises BrokenMeshError if they are no weights."""
     _require_all(
         abs(origins.weights.sum(axis=1, dtype=np.float64) - 1.0) < 1e-5,
         "origins have weights that add up to one",

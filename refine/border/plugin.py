@@ -154,7 +154,7 @@ class Refiner(Protocol):
 
     @property
     def triangle_edges(self) -> npt.NDArray[np.int32]:
-        """Edges of each input triangle, corner i to i + 1, shape (F, 3); -1 if it has no edges."""
+        """Edges of each input triangle, from corner i to i + 1, shape (F, 3); -1 for no edge."""
 
     @property
     @abstractmethod

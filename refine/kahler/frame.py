@@ -44,7 +44,7 @@ class FrameBuffers(NamedTuple):
     meaning.
     """
     geomorph_twice: Floats32
-    """The same for the quarter points of an edge."""
+    """Geomorph weight of an edge's quarter points, (E,), like `geomorph_once`."""
     first_points: Unsigned32
     """Output row of the first point of every split attribute edge, shape (R + 1,).
 

@@ -130,7 +130,7 @@ class LoopScheme(Scheme):
         place_by_loop(*self._tuples, self._vertex_geomorph, self._edge_points)
 
     def _place_shared(self, frame: FrameBuffers) -> None:
-        """Do the same in loops shared among threads, with results equal to the last bit."""
+        """Write the results of `place` in loops shared among threads, equal to the last bit."""
         around = self._around
         edge_points = self._edge_points
         geomorph = self._vertex_geomorph
@@ -141,7 +141,7 @@ class LoopScheme(Scheme):
         parallel_for(place_quarters, len(frame.twice_split_edges), frame, around, edge_points)
 
     def _place_kept(self, frame: FrameBuffers, kept: KeptRows) -> None:
-        """Do the same for frames with the same splits."""
+        """Write the results of `place` for frames whose splits never change."""
         rows = frame.rows
         vertex_count = len(frame.points)
         parallel_for(copy_frame, vertex_count, frame, kept)
@@ -353,7 +353,7 @@ def place_kept(
     inside_count: int,
     edge_points: Floats32,
 ) -> None:
-    """Write what `place_by_loop` writes, for fixed splits; `kept`: plain tuple of `KeptRows`."""
+    """Write the results of `place_by_loop` for fixed splits; `kept`: tuple of `KeptRows`."""
     of_frame = FrameBuffers(*frame)
     matrix = KeptRows(*kept)
     rows = of_frame.rows

@@ -118,7 +118,7 @@ def connect(
 def connect_writable(
     faces: npt.ArrayLike, vertex_count: int, face_uv: npt.ArrayLike | None = None
 ) -> Connectivity:
-    """Build what `connect` builds, with writable arrays, for a refiner that does not share them.
+    """Build the result of `connect` with writable arrays, for a refiner that does not share them.
 
     Compiled code takes writable arrays faster.
     """

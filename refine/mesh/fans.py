@@ -22,7 +22,7 @@ class Fans(NamedTuple):
     corners: Unsigned32
     """Corners at each vertex, 4 x triangle + i, triangles in their order, shape (3 F,)."""
     neighbour_starts: Unsigned32
-    """The same for neighbours, shape (V + 1,)."""
+    """Places of the neighbours of each vertex in `neighbours`, like `corner_starts`, (V + 1,)."""
     neighbours: Unsigned32
     """The other ends of the edges at each vertex, in the order of edges, shape (2 E,)."""
 

@@ -50,7 +50,7 @@ def parallel_for(kernel: Callable[..., object], count: int, *arguments: object) 
 
 
 def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
-    """Start a task in another thread if `count` items justify it; return a call that awaits it."""
+    """Start a task in another thread if `count` is large; return a function that completes it."""
     if threads_for(count) == 1:
         return task
     other = _threads().submit(task)
@@ -58,7 +58,7 @@ def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
 
 
 def threads_for(count: int) -> int:
-    """Number of threads, including this one, that a loop over `count` items is worth."""
+    """Return the number of threads for a loop over `count` items, including this thread."""
     if count < 2 * ITEMS_OF_PART:  # for small meshes this check is a part of the frame's time
         return 1
     return max(min(count // ITEMS_OF_PART, THREAD_COUNT), 1)

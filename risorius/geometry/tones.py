@@ -15,7 +15,7 @@ from .arrays import Floats32, Unsigned8
 
 
 class Absorbed(NamedTuple):
-    """Pigments of skin: for each the light absorbed by channel, (3,), and a map, (H, W)."""
+    """Four pigments of skin; each has the light that it absorbs, (3,), and a map, (H, W)."""
 
     amounts: tuple[Floats32, Floats32, Floats32, Floats32]
     maps: tuple[Floats32, Floats32, Floats32, Floats32]

@@ -49,7 +49,7 @@ def test_everything_in_the_mouth_is_inside_the_head(head):
 
 
 def test_teeth_darken_toward_the_corners_of_the_mouth(head):
-    """Premolars have about half the lightness of incisors, as in the shade of the cheeks."""
+    """Premolars have about half the lightness of incisors, because cheeks shade them."""
     teeth = part(head, "teeth_upper")
     lightness = teeth.colours.mean(axis=1)
     aside = np.abs(teeth.vertices[:, 0])

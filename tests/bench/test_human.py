@@ -1,4 +1,4 @@
-"""The measure of human form explains heads of its model space, and reports other heads."""
+"""The measure of human form: heads of its model space have no error, other heads have one."""
 
 import numpy as np
 import pytest

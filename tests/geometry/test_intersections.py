@@ -31,7 +31,7 @@ def test_more_pairs_than_expected_are_all_found():
 
 
 def test_large_and_small_triangles_are_compared():
-    """Every crossing in a seeded heap is found, although candidates are found by size classes."""
+    """Every crossing in a random heap is found, also between large and small triangles."""
     random = np.random.default_rng(5)
     sizes = np.exp(random.uniform(-2.0, 2.5, 50))
     points = random.uniform(-3.0, 3.0, (50, 1, 3)) + sizes[:, None, None] * random.normal(
