@@ -3,8 +3,8 @@
 trimesh ignores strips, does not read binary polygons of several sizes, and reads colours under one
 name and in one size only.
 
-Source: Turk 1994, "The PLY polygon file format"; names of colours and strips are those that
-programs write.
+Source: Turk 1994, "The PLY polygon file format"; the names of colours and strips are taken from
+programs that write such files.
 """
 
 from __future__ import annotations

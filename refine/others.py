@@ -131,7 +131,7 @@ class Loop(BaseRefiner):
         return vertex_count, triangle_count
 
     def follow_values(self) -> None:
-        """Compute the values of every level: those of the level before, then those on its edges."""
+        """Compute the values of every level: all values of the level before, then on its edges."""
         assert self._values is not None
         values = self._values.values
         for mesh in self._split:

@@ -67,7 +67,7 @@ def create_kahler_gl(
       processor measures others, by name or as objects, in every frame.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles.
-    - `scheme`: "loop", the paper's, with its normals, or "cubic", with those of its own surface.
+    - `scheme`: "loop", the paper's, with its normals, or "cubic", with normals of its own surface.
     - `blend`: whether points move gradually out of their edges, so that nothing pops. None, the
       default, chooses True for "cubic", unless it is `coherent`, and False for "loop", where True
       is refused.

@@ -21,7 +21,7 @@ def hide_below(
 ) -> None:
     """Write the depths of dense hair, so that skin below it is not shaded.
 
-    parts: those that are not hair are ignored. program: shadow.glsl with the define SHELLS.
+    parts: all parts except hair are ignored. program: shadow.glsl with the define SHELLS.
     """
     # These depths equal those of the lowest layer of hair, so rounding would hide parts of it.
     program.ctx.polygon_offset = FARTHER

@@ -195,7 +195,7 @@ class PartStore:
         self._known: dict[int, tuple[Callable[[], DrawnPart | None], PartBuffers]] = {}
 
     def uploaded(self, parts: Iterable[PlacedPart]) -> list[PlacedBuffers]:
-        """Return the buffers of each part; upload those that are new or changed their shape."""
+        """Return the buffers of each part; upload new parts, and parts with a changed shape."""
         self._forget_lost()
         return [
             PlacedBuffers(self._buffers_of(each), each, 2 + index % 187)

@@ -300,7 +300,7 @@ class Renderer:
         *,
         cut: Plane | None = None,
     ) -> None:
-        """Draw coloured parts; those that are blended come last.
+        """Draw coloured parts; blended parts come last.
 
         cut: plane. In front of it opaque skin will hide the parts, even where they pierce the skin.
         """

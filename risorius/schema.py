@@ -104,7 +104,7 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A rule for a value: it must be one of `values`, or of those that a function returns.
+    """A rule for a value: it must be one of `values`, or of the values that a function returns.
 
     description: words that replace a long list of values in an error.
     """

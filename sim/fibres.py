@@ -88,7 +88,7 @@ class FibreBundle(NamedTuple):
 
 
 class Stack(NamedTuple):
-    """The points of lines that lie on other lines; those of line b are rows[b]:rows[b + 1]."""
+    """The points of lines that lie on other lines; line b has the rows[b]:rows[b + 1]."""
 
     rows: Unsigned32  # (B + 1,)
     point: Unsigned32  # (n,) number within the carried line

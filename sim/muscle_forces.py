@@ -46,7 +46,7 @@ from .surface import SkinSurface
 
 
 class Attachments(NamedTuple):
-    """Vertices attached to muscles or lines; those of muscle or line m are rows[m]:rows[m + 1]."""
+    """Vertices attached to muscles or lines; muscle or line m has the rows[m]:rows[m + 1]."""
 
     rows: Unsigned32  # (owners + 1,)
     vertex: Unsigned32  # (n,)

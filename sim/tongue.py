@@ -1,7 +1,7 @@
 """The tongue: a spine in the middle plane that bends, and flesh around it.
 
-The tongue is attached to the mandible, so all coordinates here are those of the mandible at rest.
-At rest the spine is the middle line of the part "tongue". Two controls bend it:
+The tongue is attached to the mandible, so all coordinates here are coordinates of the mandible at
+rest. At rest the spine is the middle line of the part "tongue". Two controls bend it:
 
     tongue_out   the spine slides along a path over the lower incisors, over the lower lip and down
                  in front of it; the root comes forward, and the tongue gets longer and thinner

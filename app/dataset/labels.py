@@ -1,4 +1,4 @@
-"""Compute the labels of a sample's face; they include those that `capture --passes` writes.
+"""Compute the labels of a sample's face, including all labels of `capture --passes`.
 
 docs/dataset.md has the unit and the convention of each field.
 """

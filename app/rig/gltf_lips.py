@@ -19,7 +19,7 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 
 
 def vertices_of(pieces: Sequence[StoredPiece], cut: LipCut | None) -> list[Integers]:
-    """Return the vertex indices of each piece in the mesh; those that a cut adds come last."""
+    """Return the vertex indices of each piece in the mesh; vertices of a cut come last."""
     found: list[Integers] = []
     start = 0
     total = sum(piece.count for piece in pieces)

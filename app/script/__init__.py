@@ -216,7 +216,7 @@ class Script:
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
-        """All controls that the script moves: first those of poses, then those only in tracks."""
+        """All controls that the script moves: first the controls of poses, then of tracks alone."""
         return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
 
     @functools.cached_property

@@ -83,7 +83,7 @@ class Origins(NamedTuple):
         return cls(corners, weights)
 
     def followed_by(self, vertices: npt.ArrayLike, weights: npt.ArrayLike) -> "Origins":
-        """Return these origins, followed by those of K more output vertices, shape (K, 3) each."""
+        """Return these origins, then the origins of K more output vertices, shape (K, 3) each."""
         return Origins(
             np.concatenate([self.vertices, np.asarray(vertices, dtype=np.int32)]),
             np.concatenate([self.weights, np.asarray(weights, dtype=np.float32)]),

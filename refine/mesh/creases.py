@@ -63,7 +63,7 @@ def with_creases(
 
 
 def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
-    """Make the flagged interior edges, shape (E,), creases, beside those that are."""
+    """Turn the flagged interior edges, shape (E,), into creases; other creases stay."""
     is_sharp = is_sharp & mesh.around.is_interior
     edges = np.flatnonzero(is_sharp)
     points = mesh.around.points.copy()

@@ -79,7 +79,7 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 def _walk(
     pixels: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
-    """Count all entries, and write row, column, triangle and weights of those that fit."""
+    """Count all entries; write row, column, triangle and weights of the entries that fit."""
     count = 0
     for t in range(pixels.shape[0]):
         a, b, c = pixels[t]

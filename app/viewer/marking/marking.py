@@ -74,7 +74,7 @@ ORDER = tuple(GROUP_OF)
 
 @dataclass(frozen=True)
 class Marks:
-    """Points of the landmarks that exist; `guessed`: numbers of those that no user has placed."""
+    """Points of the existing landmarks; `guessed`: numbers of landmarks that no user placed."""
 
     places: Mapping[int, Place]
     guessed: frozenset[int] = frozenset()
@@ -205,7 +205,7 @@ class Marking:
         self._stand_up(self.marks.by_hand)
         self.marks = self.marks.with_guessed(found)
         self._note()
-        return "All points are guessed; drag those that are not where they belong"
+        return "All points are guessed; drag wrong points to their place"
 
     def go(self, step: int) -> None:
         """Go to the next landmark in the order of marking, or with -1 to the previous landmark."""

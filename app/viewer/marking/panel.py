@@ -101,7 +101,7 @@ class MarkingPanel:
             "The wheel zooms, the middle button moves."
         )
         later_advice = (
-            "Drag points that are not where they belong; a click on the skin moves this one. "
+            "Drag wrong points to their place; a click on the skin moves this one. "
             "White inside: guessed, and not moved yet."
         )
         imgui.text_wrapped(later_advice if is_complete else first_advice)
