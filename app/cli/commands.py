@@ -111,7 +111,7 @@ def view(
     """
     listening = live.listening(gains, mirror)
     mesh = None
-    if isinstance(drawing.head, Path) and drawing.landmarks is None:
+    if isinstance(drawing.head, Path):
         mesh = drawing.head
     is_plain = (script, scene, sound) == (None, None, None)
     performance = None if is_plain else played(script, scene, sound=sound, quiet=quiet)
@@ -255,7 +255,7 @@ def open_window(
                 if line and not viewer.messages.text:  # an error stays on screen
                     viewer.messages.say(line)
             if mesh is not None and head is None:
-                viewer.read(mesh)()
+                viewer.read(mesh, drawing.landmarks)()
                 if complaint:
                     viewer.messages.say(complaint, stays=True)
             viewer.run(playing=playing, once=once)

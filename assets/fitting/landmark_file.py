@@ -111,7 +111,7 @@ class UnfinishedError(AssetError):
 
 
 class MisfitError(UnfinishedError):
-    """The landmarks of a known topology do not fit the head; the user can mark others."""
+    """Some landmarks do not fit the head; the user can mark them anew in the window."""
 
 
 def _document(path: Path) -> Any:
@@ -172,11 +172,19 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     greatest_ratio = 0.05  # greatest distance from the mesh / distance of the outer eye corners
     outer_eye_corners = [36, 45]
     allowed = greatest_ratio * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
-    if distance.max() > allowed:
+    off = distance > allowed
+    if off.any():
         place = int(distance.argmax())
-        raise AssetError(
+        where = (
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
-            f"{allowed:.3g} (a twentieth of the eyes' distance): give unit and axes of the mesh"
+            f"{allowed:.3g} (a twentieth of the eyes' distance): "
+        )
+        if 2 * np.count_nonzero(off) > COUNT:
+            raise AssetError(f"{where}give unit and axes of the mesh")
+        numbers = ", ".join(str(number) for number in np.flatnonzero(off))
+        raise MisfitError(
+            f"{where}the mesh has no skin there; mark {numbers} anew in the window, `risorius view "
+            "--head MESH --landmarks FILE`, or give a mesh with complete lips and lids"
         )
     # Points near an eye may lie on a lash or on the eyeball, but most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]

@@ -13,6 +13,7 @@ from scipy.interpolate import RBFInterpolator
 from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
+from risorius.assets.fitting.landmark_file import MisfitError
 from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
@@ -271,7 +272,18 @@ def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
     if is_allowed:
         fit_head(mesh, file)
         return
-    with pytest.raises(AssetError, match=r"landmark 30 lies .* units off the mesh; allowed are"):
+    advice = (
+        r"landmark 30 lies .* units off the mesh; allowed are .* has no skin there; mark 30 anew"
+    )
+    with pytest.raises(MisfitError, match=advice):
+        fit_head(mesh, file)
+
+
+def test_points_in_another_unit_are_refused(other, tmp_path):
+    """Where most points lie off the mesh, the advice is about unit and axes of the mesh."""
+    mesh, file = other.write(tmp_path)
+    file.write_text(json.dumps((1000.0 * other.mesh.vertices[other.landmarks]).tolist()))
+    with pytest.raises(AssetError, match=r"off the mesh; .*: give unit and axes of the mesh"):
         fit_head(mesh, file)
 
 
