@@ -1,7 +1,7 @@
 """The paint of primitives in a glTF file: pictures and their layout, tints, vertex colours.
 
 Source: Khronos Group, "glTF 2.0 Specification", sections 3.8 and 3.9; KHR_texture_transform,
-KHR_materials_pbrSpecularGlossiness, EXT_texture_webp.
+KHR_materials_pbrSpecularGlossiness, EXT_texture_webp, KHR_texture_basisu.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WHITE = (1.0, 1.0, 1.0)
 class GltfPainter:
     """Finds the paint of primitives. `pictures` collects unread pictures by image and tint."""
 
-    UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
+    UNREAD = ("EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
 
     def __init__(self, file: GltfFile) -> None:
         self.pictures: dict[tuple[int, tuple[float, ...]], Callable[[], Image]] = {}
@@ -61,8 +61,9 @@ class GltfPainter:
         if texture.source is not None:
             return int(texture.source)
         extensions = texture.extensions or {}
-        if "EXT_texture_webp" in extensions:
-            return int(extensions["EXT_texture_webp"]["source"])
+        for name in ("EXT_texture_webp", "KHR_texture_basisu"):
+            if name in extensions:
+                return int(extensions[name]["source"])
         found = [place for place, name in enumerate(self.UNREAD) if name in extensions]
         return -1 - found[0] if found else -1 - len(self.UNREAD)
 

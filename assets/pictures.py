@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from .user_files import beside, named, read_file
 from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
 LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
+KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n"  # first bytes of a KTX 2 file
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,8 @@ def decoded(content: bytes, name: str) -> Image:
     """
     import PIL.Image  # which to load a head takes no time for
 
+    if content.startswith(KTX2):
+        return _basis_picture(content, name)
     try:
         with warnings.catch_warnings():  # Pillow warns of pictures that decompress to gigabytes
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
@@ -132,6 +136,35 @@ def decoded(content: bytes, name: str) -> Image:
         raise AssetError(
             f"its picture {named(name)}: is broken, too large, or neither PNG, JPEG nor WebP "
             f"({reason}); save it anew"
+        ) from None
+
+
+def _basis_picture(content: bytes, name: str) -> Image:
+    """Return the picture in a KTX 2 file, as `decoded` does: its largest mip level up to LARGEST.
+
+    Source: Khronos Group, "KHR_texture_basisu" (rows run from the top).
+    """
+    try:
+        decoder = import_module("opengl_basisu")
+    except ModuleNotFoundError:
+        raise AssetError(
+            f"its picture {named(name)}: is compressed (KTX 2), which needs opengl_basisu; install "
+            "it in the checkout: pip install '.[compression]', or save it as PNG"
+        ) from None
+    try:
+        texture = decoder.open(content)
+        sizes = [max(texture.level_size(level)) for level in range(texture.levels)]
+        level = next(number for number, size in enumerate(sizes) if size <= LARGEST)
+        return np.array(texture.transcode("rgba8", level).data[..., :3])
+    except StopIteration:
+        raise AssetError(
+            f"its picture {named(name)}: is wider or higher than {LARGEST} pixels; save it smaller"
+        ) from None
+    except (decoder.BasisuError, MemoryError, ValueError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise AssetError(
+            f"its picture {named(name)}: is broken, or no Basis Universal picture ({reason}); "
+            "save it anew"
         ) from None
 
 

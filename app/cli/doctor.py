@@ -25,7 +25,7 @@ EXTRAS = {
     "export": ("h5py", "pxr"),
     "passes": ("OpenEXR",),
     "cluster": ("distributed",),
-    "compression": ("DracoPy", "meshopt"),
+    "compression": ("DracoPy", "meshopt", "opengl_basisu"),
 }
 """The modules that `pip install '.[EXTRA]'` installs."""
 PARTS_OF_COMMANDS = {

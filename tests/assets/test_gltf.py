@@ -442,12 +442,12 @@ def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
 
     Hair may have a format other than the skin's.
     """
-    texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
+    texture = maker.add("textures", {"extensions": {"EXT_texture_avif": {"source": 0}}})
     number = material(maker, {"index": texture})
     show_square(maker, {"TEXCOORD_0": maker.accessor(UV)}, material=number)
-    maker.parts["extensionsRequired"] = ["KHR_texture_basisu"]
+    maker.parts["extensionsRequired"] = ["EXT_texture_avif"]
     found = read(maker, tmp_path)
-    with pytest.raises(AssetError, match="not read \\(KHR_texture_basisu\\); save it as PNG"):
+    with pytest.raises(AssetError, match="not read \\(EXT_texture_avif\\); save it as PNG"):
         found.texture.pictures[0]()
 
 

@@ -1,7 +1,9 @@
 """Compressed glTF is read like the same file without compression."""
 
+import base64
 import json
 import sys
+import zlib
 
 import numpy as np
 import pytest
@@ -143,3 +145,63 @@ def test_broken_data_give_one_line(make, change, message, tmp_path):
     with pytest.raises(AssetError, match=message) as refusal:
         shape_of(maker, tmp_path)
     assert "\n" not in str(refusal.value)
+
+
+KTX2 = {  # a square of 8 pixels, (200, 40, 30) above (30, 60, 200), by both codecs
+    "ETC1S": (
+        "eNpb7R0SoWBksJuXS4qLAQgYgZgDimGAEQlnALEOEE8BYhUg3gFV0w2lnRkhNBMDKtBhgIlrMCxmZGJgZka2wx"
+        "7O+g8E8kAa6KzyosyS1CIGp8TizGKF0LzMstSi4sQcBSM9QwOQOUwMekB1nEhmMzBg2i1/YAqEsclpKuMZCNNx"
+        "D78hgzDEoR4MLAlcDWDmyUNaLEBqxapVq5hMDrhA1Aq5MsxgEACxHGQY1VhATm5QKPJiPMACtYuDYQEjAPRjJl"
+        "Q="
+    ),
+    "UASTC": (
+        "eNpb7R0SoWBksJuXS4qLAQgYgZgDimGAEYpBIAOIdYB4CpRGBwegtAMaDVPLxKDBsIyRiYGZmYFBAK6rHs76Dw"
+        "TyQBrorPKizJLUIganxOLMYoXQvMyy1KLixBwFIz1DAwYGFpAuoDZxyaOP6y8ch+tH519vZv9Zr6TBjIsPAKSu"
+        "JNs="
+    ),
+}
+
+
+def picture_of(content, folder):
+    """The picture of a square whose KTX 2 file has this content."""
+    maker = GltfMaker()
+    image = maker.add("images", {"bufferView": maker.view(content), "mimeType": "image/ktx2"})
+    texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": image}}})
+    paint = {"pbrMetallicRoughness": {"baseColorTexture": {"index": texture}}}
+    uv = {"TEXCOORD_0": maker.accessor(SQUARE[:, :2])}
+    material = maker.add("materials", paint)
+    primitive = maker.primitive(SQUARE, FACES, attributes=uv, material=material)
+    maker.shown({"mesh": maker.mesh(primitive)})
+    maker.parts["extensionsRequired"] = maker.parts["extensionsUsed"] = ["KHR_texture_basisu"]
+    return assets.read_mesh(maker.write(folder / "a.glb")).texture.pictures[0]()
+
+
+@pytest.mark.parametrize("codec", KTX2)
+def test_pictures_in_ktx2_are_read(codec, tmp_path):
+    """KHR_texture_basisu: rows run from the top, and colours are right to a few levels."""
+    pytest.importorskip("opengl_basisu", reason="needs the extra 'compression'")
+    picture = picture_of(unzipped(KTX2[codec]), tmp_path)
+    assert picture.shape == (8, 8, 3)
+    assert np.abs(picture[0, 0].astype(int) - (200, 40, 30)).max() < 6
+    assert np.abs(picture[7, 7].astype(int) - (30, 60, 200)).max() < 6
+
+
+@pytest.mark.parametrize("codec", KTX2)
+def test_broken_pictures_in_ktx2_are_named(codec, tmp_path):
+    """A cut file gives one line; a missing package is named with the extra."""
+    pytest.importorskip("opengl_basisu", reason="needs the extra 'compression'")
+    with pytest.raises(AssetError, match="its picture 0: is broken, or no Basis Universal"):
+        picture_of(unzipped(KTX2[codec])[:100], tmp_path)
+
+
+def test_ktx2_names_its_missing_package(tmp_path, monkeypatch):
+    """Without the package, one line names it, the extra and another remedy."""
+    monkeypatch.setitem(sys.modules, "opengl_basisu", None)
+    remedy = r"needs opengl_basisu; install it .*'\.\[compression\]', or save it as PNG"
+    with pytest.raises(AssetError, match=remedy):
+        picture_of(unzipped(KTX2["UASTC"]), tmp_path)
+
+
+def unzipped(text):
+    """The bytes of a text in base64."""
+    return zlib.decompress(base64.b64decode(text))
