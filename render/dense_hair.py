@@ -26,8 +26,10 @@ def hide_below(
     # These depths equal those of the lowest layer of hair, so rounding would hide parts of it.
     program.ctx.polygon_offset = FARTHER
     for each in parts:
+        if each.buffers.kind != "SHELLS":
+            continue
         covered = view.covered_pixels(each.corners)
-        if each.buffers.kind != "SHELLS" or min(covered[2:]) <= 0:
+        if min(covered[2:]) <= 0:
             continue
         write_uniform(program, "to_clip", each.part.transform.T @ view.world_to_clip)
         target.use(view.viewport, covered)
