@@ -112,6 +112,25 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
 
 
 @pytest.mark.slow
+def test_pictures_are_written_into_a_folder_again(viewer, tmp_path):
+    """For a folder that exists, the dialog asks; only pictures of an earlier film are replaced."""
+    folder = tmp_path / "smile"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("precious")
+    (folder / "frame_00099.png").write_bytes(b"of an earlier film")
+    press_keys(viewer, "F10")
+    begin(viewer)
+    assert viewer.files.request.complaint == "smile is there already; other files in it stay"
+    assert viewer.exporter.job is None
+    press_keys(viewer, "Return")
+    assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
+    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert not viewer.messages.is_error
+    assert (folder / "notes.txt").read_text() == "precious"
+    assert pictures(folder).shape == (7, 120, 160, 3)
+
+
+@pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
     """The same dialog writes the file of `risorius export`, under the typed name."""
     press_keys(viewer, "ctrl+e")

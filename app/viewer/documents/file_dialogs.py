@@ -63,15 +63,20 @@ class FileRequest:
         return target
 
     def confirmed(self) -> Path | None:
-        """Return the target; None for a folder, a missing file, or an unconfirmed replacement."""
+        """Return the target; None for a missing file, or an unconfirmed replacement.
+
+        A folder is entered, unless a folder is saved.
+        """
         target = self.target
-        if target.is_dir():
+        saves_folder = self.suffixes == ("",) and self.name.strip()
+        if target.is_dir() and not saves_folder:
             self.enter(target)
         elif not self.is_saving and not target.is_file():
             self.complaint = as_text(f"there is no {target.name}")
         elif self.is_saving and target.exists() and target != self.warned:
             self.warned = target
-            self.complaint = as_text(f"{target.name} is there already")
+            others = "; other files in it stay" if target.is_dir() else ""
+            self.complaint = as_text(f"{target.name} is there already{others}")
         else:
             return target
         self.wants_focus = True
