@@ -104,11 +104,11 @@ class Pipeline:
             values = drawn.splits()
         elif drawn.mesh is not None and style.colour_by is render.ColourBy.SPLIT_WIRES:
             values = drawn.splits_beyond_rest()
-        fading = mouth = None
+        fading = None
         if self._fading is not None and drawn.can_fade and drawn.positions is not None:
             fading = drawn.positions[self._fading]
-            rims = self.scene.rims(render.Opening.RIM_POINTS)
-            mouth = rims["mouth"].points if "mouth" in rims else None
+        rims = self.scene.rims(render.Opening.RIM_POINTS)
+        mouth = rims["mouth"].points if "mouth" in rims else None
         skin = render.Skin(drawn.stream, maps, fading, values, mouth)
         # Uploaded amounts have the strength of wrinkles, for folds of lids keep theirs.
         style = replace(style, opacity=style.opacity * seen.opacity, bumps=1.0)

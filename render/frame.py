@@ -131,8 +131,8 @@ class Skin:
       needed unless the style has `ColourBy.NONE`.
     - fading: points around the part of the mesh that fades, (n, 3); None: nothing fades. The stream
       must have columns 17 and 18, which give the fading, else ValueError is raised.
-    - mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. The inner side of a
-      mesh with a fading neck is hidden, except in the mouth.
+    - mouth: the rim of the lips, as `Opening.rim`; None: there are no lips. Behind it the inner
+      side of the mesh is dark. Elsewhere the inner side of a mesh with a fading neck is hidden.
     """
 
     stream: MeshBuffers

@@ -19,11 +19,11 @@ _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
 
 def mesh_shader(
-    style: Style, has_texture: bool, maps: Iterable[BumpMap], fade: Iterable[str]
+    style: Style, has_texture: bool, maps: Iterable[BumpMap], of_skin: Iterable[str]
 ) -> list[str]:
     """Return file and defines of a mesh's program.
 
-    maps: maps that tilt normals. fade: defines of `fade_defines`.
+    maps: maps that tilt normals. of_skin: defines for the mouth and the fading of the skin.
     """
     return [
         "surface.glsl",
@@ -35,7 +35,7 @@ def mesh_shader(
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
         *(each.define for each in maps),
-        *fade,
+        *of_skin,
         *(["AROUND"] if style.light.around else []),
     ]
 

@@ -29,7 +29,7 @@ from .materials import (
     set_part,
     value_texture,
 )
-from .opening import set_rim
+from .opening import RIM_DEFINE, set_rim
 from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import RenderTarget
@@ -231,10 +231,11 @@ class Renderer:
         if not self._use_surfaces(view, stream.corners):
             return
         fade = fade_defines(frame.skin, view)
+        mouth = () if frame.skin.mouth is None else ("LIPS", RIM_DEFINE)
         if values is not None:
             values.use(_VALUE_UNIT)
         drawn = [
-            (self._skin_program(frame, view, maps, shadow, fade), group)
+            (self._skin_program(frame, view, maps, shadow, (*mouth, *fade)), group)
             for group, maps in _groups(frame.skin, style)
         ]
         if frame.is_opened:
@@ -267,20 +268,20 @@ class Renderer:
         view: PlacedView,
         maps: dict[BumpMap, float],
         shadow: Shadow | None,
-        fade: Sequence[str],
+        defines: Sequence[str],
     ) -> moderngl.Program:
         """Return the program of a frame's skin, and set its uniforms and textures."""
         assert frame.skin is not None
         style = frame.style
         texture = frame.skin.maps.texture if style.textured else None
-        names = mesh_shader(style, texture is not None, maps, fade)
+        names = mesh_shader(style, texture is not None, maps, defines)
         program = self._program(*names)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
         set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
-        if frame.skin.mouth is not None and "mouth_rim" in program:
-            set_rim(program, "mouth_rim", frame.skin.mouth, view)
+        if frame.skin.mouth is not None:
+            set_rim(program, "rim", frame.skin.mouth, view)
         if shadow is not None:
             shadow.set_uniforms(program, _SHADOW_UNIT)
         if texture is not None:

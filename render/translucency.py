@@ -9,7 +9,6 @@ import numpy as np
 
 from .camera import PlacedView
 from .frame import Frame, Plane, Skin
-from .opening import RIM_DEFINE
 from .render_target import intersection
 from .stream import MeshBuffers, TriangleGroup
 
@@ -113,4 +112,4 @@ def fade_defines(skin: Skin, view: PlacedView) -> tuple[str, ...]:
     if skin.mouth is None:
         return ("FADED",)
     shared = intersection(fading, view.covered_pixels(skin.mouth))
-    return ("FADED", "MOUTH", RIM_DEFINE) if min(shared[2:]) > 0 else ("FADED",)
+    return ("FADED", "MOUTH") if min(shared[2:]) > 0 else ("FADED",)

@@ -1,5 +1,6 @@
 // Light that reaches a part through an opening in the skin. FILLED: the part fills the opening, like an
-// eyeball. BEHIND: the part lies behind it, like teeth. See opening.py. Constants are chosen by eye.
+// eyeball. BEHIND: the part lies behind it, like teeth. LIPS: the part is the skin around it. See
+// opening.py. Constants are chosen by eye.
 
 #if defined(FILLED)
 

@@ -8,12 +8,13 @@
 // STRANDS: thin strands with three sides, blended by the fraction of a pixel that they cover.
 // FIBRES: striation (fibres.glsl).
 // TRANSLUCENT: skin that shows parts below it. SUNK: these parts, hidden where skin is opaque.
-// FADED: skin that fades by vertex. MOUTH: the fading part may overlap the mouth on the screen.
+// LIPS: skin with a mouth, whose inner side is dark behind the lips.
+// FADED: skin that fades by vertex. MOUTH: the fading part may overlap the mouth on the screen; needs LIPS.
 // TRIANGLES: each triangle has its own surface number.
 // FILLED, BEHIND: parts that get light through an opening (opening.glsl).
 
 #include "lighting.glsl"
-#if defined(FILLED) || defined(BEHIND)
+#if defined(FILLED) || defined(BEHIND) || defined(LIPS)
 #include "opening.glsl"
 #endif
 
@@ -349,22 +350,20 @@ vec3 front_albedo() {
     return front;
 }
 
-#if defined(MOUTH)
-uniform vec3 mouth_rim[RIM_POINTS];  // outline of the lips, clockwise seen from outside
-
+#if defined(LIPS)
 // Whether a point is visible through the open lips: their outline runs clockwise around it on the
 // screen. The outline is enlarged, which is safe, because lips hide points beside their opening.
 bool is_in_mouth(vec3 place) {
     const float GROWTH = 1.4;
     vec3 middle = vec3(0.0);
-    for (int i = 0; i < RIM_POINTS; i++) middle += mouth_rim[i] / float(RIM_POINTS);
+    for (int i = 0; i < RIM_POINTS; i++) middle += rim[i] / float(RIM_POINTS);
     if (place.z > middle.z) return false;
     vec2 at = place.xy / place.z;
     int turns = 0;
-    vec3 last = mix(middle, mouth_rim[RIM_POINTS - 1], GROWTH);
+    vec3 last = mix(middle, rim[RIM_POINTS - 1], GROWTH);
     vec2 from = last.xy / min(last.z, -1e-6);
     for (int i = 0; i < RIM_POINTS; i++) {
-        vec3 next = mix(middle, mouth_rim[i], GROWTH);
+        vec3 next = mix(middle, rim[i], GROWTH);
         vec2 to = next.xy / min(next.z, -1e-6);
         if ((from.y > at.y) != (to.y > at.y)) {
             float x = mix(from.x, to.x, (at.y - from.y) / (to.y - from.y));
@@ -481,6 +480,13 @@ void main() {
     // Back faces that are nearly edge-on lie on the outline, where front and back have equal depths.
     // They get the light of the front, else dark specks of the inner side would show there.
     float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
+#if defined(LIPS)
+    // Inside, cheeks and lips get as little light as the gums beside them.
+    if (!gl_FrontFacing && is_in_mouth(surface.position)) {
+        inner *= reddened(light_let_in(surface.position, vec3(0.0)));
+        inwardness = 1.0;
+    }
+#endif
     light = mix(light, inner_albedo * inner, inwardness);
 #endif
     vec3 shown = display(light);

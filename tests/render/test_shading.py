@@ -113,6 +113,30 @@ def test_a_fade_needs_its_columns(renderer):
         render.Skin(stream, fading=np.zeros((1, 3)))
 
 
+def round_rim(turn=1):
+    """The rim of round lips in front of the mesh; turn: -1 for lips seen from behind."""
+    angles = np.linspace(np.pi, -np.pi, render.Opening.RIM_POINTS, endpoint=False)[::turn]
+    centre = np.array([0.0, 0.0, 10.0])
+    return centre + 5.0 * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+
+
+@pytest.mark.parametrize("shading", render.Shading)
+def test_the_inside_of_cheeks_is_dark_behind_the_lips(renderer, shading):
+    """Back faces in the mouth get the light of the opening; a pale strip lay beside the teeth.
+
+    Beside the mouth, and where lips are seen from behind, back faces keep their light.
+    """
+    shape = square(30.0)
+    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    style = replace(PLAIN, shading=shading)
+    skin = render.Skin(lent(renderer, turned))
+    lit = draw(renderer, skin, style)
+    behind = draw(renderer, replace(skin, mouth=round_rim()), style)
+    assert behind[48, 48].mean() < 0.8 * lit[48, 48].mean()
+    assert (behind[48, 66] == lit[48, 66]).all()
+    assert (draw(renderer, replace(skin, mouth=round_rim(-1)), style) == lit).all()
+
+
 @pytest.mark.parametrize("turn", [1, -1])
 def test_the_inside_of_a_faded_neck_shows_through_the_lips(renderer, turn):
     """Faded back faces are drawn within the outline of the mouth, so that it has no hole.
@@ -122,9 +146,6 @@ def test_the_inside_of_a_faded_neck_shows_through_the_lips(renderer, turn):
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     skin = fading(renderer, turned, (1.75, 1.75, 1.75, 1.75), -0.5)
-    round_ = np.linspace(np.pi, -np.pi, render.Opening.RIM_POINTS, endpoint=False)[::turn]
-    middle = np.array([0.0, 0.0, 10.0])
-    rim = middle + 5.0 * np.column_stack([np.cos(round_), np.sin(round_), np.zeros(len(round_))])
-    image = draw(renderer, replace(skin, mouth=rim))
+    image = draw(renderer, replace(skin, mouth=round_rim(turn)))
     assert (image[48, 48].mean() < 250.0) == (turn == 1)
     assert image[48, 80].mean() > 250.0
