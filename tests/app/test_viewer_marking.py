@@ -92,6 +92,24 @@ def test_a_known_head_opens_without_marking(mesh, tmp_path, monkeypatch):
         fitted_head_of(drawing, may_be_marked=False)
 
 
+def test_a_landmark_off_the_mesh_is_marked_anew(mesh, tmp_path, monkeypatch):
+    """`view --head MESH --landmarks FILE` opens the marking if a landmark lies off the mesh."""
+    opened = []
+    monkeypatch.setattr(
+        commands, "open_window", lambda *given, **more: opened.append((given, more))
+    )
+    points = true_places()
+    points[30] += 0.1 * (points[30] - points[[1, 15]].mean(axis=0))
+    file = tmp_path / "off.json"
+    file.write_text(json.dumps(points.tolist()))
+    given = ["--head", str(mesh), "--landmarks", str(file)]
+    assert CliRunner().invoke(commands.view, given).exit_code == 0
+    (_, _, drawing), more = opened[0]
+    assert more["mesh"] == mesh
+    head, complaint = fitted_head_of(drawing, may_be_marked=True)
+    assert head is None and "mark 30 anew" in complaint
+
+
 @pytest.mark.slow
 def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     """Unmarked landmarks are saved as null; marking continues from such a file.
