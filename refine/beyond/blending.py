@@ -25,10 +25,13 @@ the middle needs no diagonal:
                                          al. 2001, "Curved PN triangles", give the same).
 
 Here m is the middle of a split edge, and its displacement is the vector from the edge to m. Let g1
->= g2 >= g3 be the geomorph weights of the edges. C is a weighted mean of the three rules, and of
-the first rule averaged over all edges:
+>= g2 >= g3 be the geomorph weights of the edges. C is a weighted mean of four points, with these
+weights:
 
-    1 - g1  of all edges at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
+    1 - g1    the centre of the triangle, plus 2/3 of the displacements of all edges
+    g1 - g2   the rule for one edge
+    g2 - g3   the rule for two edges
+    g3        the rule for three edges
 
 A triangle with two or more splits needs one more point and two more subtriangles than in the paper.
 
