@@ -81,7 +81,6 @@ class OneLid(NamedTuple):
     fold: Floats64  # (V,) share of the turn of the open lid
     slide: Floats64  # (V,) share of the slide
     near: Flags  # (V,) near the margin
-    distance: Floats64  # (V,) mm from the front edge
     front: Floats64  # (COLUMNS,) rad, angle to the front edge
     depth: Floats64  # (COLUMNS,) mm from the centre of the eyeball to the front edge
 
@@ -107,7 +106,6 @@ def one_lid(
         weight=on_lid * _falloff(distance, eyes.lid_plateau, eyes.lid_reach),
         fold=on_lid * _falloff(distance, *fold_ends),
         slide=on_lid * _falloff(distance, 0.0, slide_reach * eyes.lid_reach),
-        distance=distance,
         near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
         front=np.interp(where, columns, axes.angle(edge)),
         depth=np.interp(where, columns, np.linalg.norm(edge - axes.centre, axis=1)),

@@ -17,6 +17,7 @@ ring of fibres is fixed. A raised lid slides a little away from the nose. Both l
 a little to the side, because the cornea draws them. The lids of each eye follow the gaze of that
 eye alone. The turn fades from the margin to the edge of the lid. The turn moves the far ends of the
 tissue springs instead of the skin, so skin still slides and is still kept off the eyeball.
+How far skin above the upper lid comes down is in lid_fold.py.
 
 Source: own; the papers close the eye by a sphincter, and skin then does not follow the eyeball.
 Angles from the visible lid margins.
@@ -24,7 +25,6 @@ Angles from the visible lid margins.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -33,6 +33,7 @@ import numpy as np
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, smoothstep
 from .lid_edges import COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
+from .lid_fold import turn_above
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
 from .lip_lid_sides import lid_side
@@ -40,8 +41,6 @@ from .rig import LIDS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
 from .state import State
 from .surface import SkinSurface
-
-Smooth = Callable[[Floats64], Floats64]
 
 
 class Lids(NamedTuple):
@@ -70,9 +69,7 @@ def place_lids(
 
     names: names of all controls in their order, to find the lid muscles' activations.
     """
-    evened_area = 10.0  # mm2
-    even = surface.smoother(evened_area)
-    parts = _lifted_eyes(rig, surface, landmarks, eyeballs, even)
+    parts = _lifted_eyes(rig, surface, landmarks, eyeballs)
     vertices, hold = _lid_vertices(rig, surface, landmarks, parts, eyeballs)
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
 
@@ -82,7 +79,6 @@ def _lifted_eyes(
     surface: SkinSurface,
     landmarks: Floats64,
     eyeballs: tuple[Eyeball, ...],
-    even: Smooth,
 ) -> list[_OneEye]:
     """The lids of each eye, in front of the eyeballs when shut.
 
@@ -96,7 +92,7 @@ def _lifted_eyes(
     least = np.inf
     for meeting in np.arange(own_meeting, 0.5 + 1e-6, 0.1).tolist():
         eyes = replace(rig.eyes, blink_meeting=meeting)
-        parts = [_one_eye(eyes, surface, landmarks, ball, even) for ball in eyeballs]
+        parts = [_one_eye(eyes, surface, landmarks, ball) for ball in eyeballs]
         highest = 0.0
         for number, (part, ball) in enumerate(zip(parts, eyeballs, strict=True)):
             lids = _lid_vertices(rig, surface, landmarks, [part], (ball,))[0]
@@ -211,7 +207,6 @@ def _one_eye(
     surface: SkinSurface,
     landmarks: Floats64,
     ball: Eyeball,
-    even: Smooth,
 ) -> _OneEye:
     """Find the lids of one eye, and the turn of each lid vertex."""
     x = surface.positions
@@ -248,7 +243,9 @@ def _one_eye(
     margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
     margins[np.concatenate(edges)] = True
     closing[margins] = (meeting - angle)[margins]
-    closing = _evened(even, closing, np.minimum(upper.distance, lower.distance), margins)
+    above = turn_above(surface, axes, edges[0], side, (upper.front, seam))
+    is_above = is_upper & ~margins & ~np.isnan(above)
+    closing[is_above] = -above[is_above]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
     corner_fraction = 0.5  # share of the open lid's motion at the corners, whose ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
@@ -260,7 +257,7 @@ def _one_eye(
     margin_turn = np.maximum(np.interp(column, where, upper.front - seam), 0.1)
     sink += is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
     least_turn = 1e-3  # vertices that move less do not belong to the lids
-    most_moved = np.maximum.reduce([weight, fold, slide])
+    most_moved = np.maximum.reduce([weight, fold, slide, np.abs(closing)])
     vertex = np.flatnonzero(most_moved > least_turn)
     overlap = weight * ball.gaze_factor * _pressed_turn(opening / ball.gaze_factor, least_opening)
     values = (weight, closing, overlap, sink, fold, opening, slide)
@@ -312,20 +309,6 @@ def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flag
     where = np.linspace(0.0, 1.0, COLUMNS)
     within: Flags = lid.near & (sign * (angle - np.interp(column, where, lid.front)) < edge_turn)
     return within
-
-
-def _evened(even: Smooth, closing: Floats64, distance: Floats64, margins: Flags) -> Floats64:
-    """The turn [rad] of each vertex, smoothed beyond the margins, because skin is a sheet.
-
-    Without smoothing, neighbours beside the corners would turn by half as much, and a closed lid
-    would have steep sides.
-
-    distance: from the nearest front edge [mm], shape (V,).
-    """
-    begins = 0.8  # mm from the front edge
-    ends = 1.8
-    fraction = np.where(margins, 0.0, smoothstep((distance - begins) / (ends - begins)))
-    return closing + fraction * (even(closing) - closing)
 
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
