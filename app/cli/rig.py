@@ -48,7 +48,7 @@ class Rigging:
         "--piece",
         multiple=True,
         metavar="PIECE=ROLE",
-        help="Correct the printed role of pieces of the file: 3=tongue, 4-20=hair, Beard=on_skin.",
+        help="Correct the printed role of pieces of the file: 3=tongue, 4-20=hair, Cap=hidden.",
     )
     parts: bool = option(
         is_flag=True, help="Add built-in eyes, teeth, tongue and mouth where HEAD has none."

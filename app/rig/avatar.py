@@ -23,7 +23,7 @@ from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
 from .linearity import Difference, corrective_poses, table, worth_correcting
 from .linearity import corrected as corrected_shapes
-from .pieces import FilePiece, corrected, described, find_pieces
+from .pieces import FilePiece, corrected, described, find_pieces, without_helpers
 from .poses import shape_names
 from .take_linearity import difference_on, played_take, worth_correcting_on
 
@@ -180,7 +180,12 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
     faces = same[mesh.faces].astype(np.int32)
     names = _names_of_vertices(len(rest), painted, stored)
     found = find_pieces(rest, faces, head.file_vertices, head, names)
-    pieces = corrected(found, request.corrections)
+    pieces = corrected(found if is_gltf else without_helpers(found), request.corrections)
+    if is_gltf and any(piece.role == "hidden" for piece in pieces):
+        raise UserError(
+            f"--piece: '{path}' is copied as it is, so its pieces cannot be hidden; delete them in "
+            "a 3D program, or leave the option out"
+        )
     tongues = [piece.vertices for piece in pieces if piece.role == "tongue"]
     if tongues:
         parts = with_own_tongue(head, rest, np.concatenate(tongues), faces)

@@ -32,7 +32,10 @@ ROLES = {  # role of a piece -> its motion
     "on_skin": "lies on the skin, moves with it: lashes, brows, a beard",
     "hair": "hair or a helmet, fixed to the cranium",
     "body": "body or clothes, does not move",
+    "hidden": "is not drawn; its vertices stay in the file",
 }
+HELPERS = ("joint-", "helper-hair")  # names of MakeHuman's markers of joints, and of blank hair
+BLANKS = "helper-"  # beginning of the names of its other auxiliary geometry
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks without the jaw line
 BESIDE = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
@@ -93,6 +96,19 @@ def find_pieces(
         role = _role_of(points, centre, head, near)
         found.append(FilePiece(number, group, role, centre, names[group[0]]))
     return _in_rows(found, rest)
+
+
+def without_helpers(pieces: Sequence[FilePiece]) -> list[FilePiece]:
+    """Hide the auxiliary geometry of MakeHuman's base mesh: joints, blank hair and blank clothes.
+
+    Its eyes, teeth, tongue and lashes stay, because they have their real forms.
+    """
+    found = []
+    for piece in pieces:
+        is_blank = piece.role in ("hair", "body") and piece.name.startswith(BLANKS)
+        is_hidden = is_blank or piece.name.startswith(HELPERS)
+        found.append(replace(piece, role="hidden") if is_hidden else piece)
+    return found
 
 
 def _role_of(

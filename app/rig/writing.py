@@ -110,7 +110,8 @@ def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
     assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
     faces = file.body.faces
-    is_left = np.ones(len(faces), np.bool_)
+    hidden = [piece.vertices for piece in file.pieces if piece.role == "hidden"]
+    is_left = ~np.isin(faces[:, 0], np.concatenate([np.empty(0, np.int64), *hidden]))
     nodes = []
     back = file.head.to_millimetres.inverse
     for eye, pivot in file.body.pivots.items() if avatar.eyes_are_nodes else ():

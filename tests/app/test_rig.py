@@ -223,12 +223,19 @@ def test_the_file_is_read_by_trimesh(whole):
 
 @pytest.mark.slow
 def test_an_option_corrects_the_role_of_a_piece(whole, tmp_path):
-    """With an option that corrects the role of pieces, eyes turn by the shapes."""
+    """An option corrects the role of pieces, and leaves out pieces; eyes turn by the shapes."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
     given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
+    given = (*given, "--piece", "shirt=hidden")
     succeeded("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
-    shapes = Player(path).shapes("head")
+    player = Player(path)
+    mesh = player.file.meshes[player.file.nodes[player.numbers["head"]].mesh]
+    drawn = np.concatenate([player.values(each.indices) for each in mesh.primitives])
+    assert not np.isin(drawn, np.r_[whole.places["shirt"]]).any()
+    assert np.isin(drawn, np.r_[whole.places["teeth_upper"]]).any()
+    shapes = player.shapes("head")
+    assert len(shapes["joy"]) >= whole.places["shirt"].stop
     assert "joy" in shapes and len(shapes) > 52
     assert np.abs(shapes["tongueOut"][whole.places["tongue"]]).max() == 0.0
     assert np.abs(shapes["eyeLookUpLeft"][whole.places["eyeball_left"]]).max() > 0.2
@@ -360,6 +367,15 @@ def test_a_glb_comes_back_as_it_was(copied):
         assert kept.items() <= new["primitives"][0].items()
         count = len(primitive.get("targets", ()))
         assert new["primitives"][0].get("targets", [])[:count] == primitive.get("targets", [])
+
+
+def test_pieces_of_a_glb_cannot_be_hidden(copied, tmp_path):
+    """A copied file keeps all its triangles, so the role `hidden` is refused in one line."""
+    own, _ = copied
+    words = ("--landmarks", own.with_suffix(".json"), "--piece", "1=hidden")
+    line = refusal(risorius("rig", own, *words, "-o", tmp_path / "a.glb"))
+    assert "copied as it is, so its pieces cannot be hidden" in line
+    assert not list(tmp_path.iterdir())
 
 
 def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):

@@ -8,7 +8,13 @@ import pytest
 import trimesh
 
 from risorius.app.errors import UserError
-from risorius.app.rig.pieces import FilePiece, corrected, described, find_pieces
+from risorius.app.rig.pieces import (
+    FilePiece,
+    corrected,
+    described,
+    find_pieces,
+    without_helpers,
+)
 from risorius.app.scenes import FaceScene
 from risorius.geometry.normals import vertex_normals
 
@@ -187,3 +193,21 @@ def test_an_option_names_pieces_by_number_or_name():
             corrected(pieces, [wrong])
     with pytest.raises(UserError, match="no piece beside the skin"):
         corrected([], ["1=hair"])
+
+
+def test_auxiliary_geometry_of_makehuman_is_hidden():
+    """Joints, blank hair and blank clothes are hidden; eyes, teeth and lashes are not.
+
+    Blank hair hung over the face, and the cube of a joint was an eyeball.
+    """
+    roles = {
+        ("joint-l-eye", "eye_left"): "hidden",
+        ("helper-hair", "on_skin"): "hidden",
+        ("helper-skirt", "body"): "hidden",
+        ("helper-l-eye", "eye_left"): "eye_left",
+        ("helper-upper-teeth", "upper_teeth"): "upper_teeth",
+        ("helper-l-eyelashes-1", "on_skin"): "on_skin",
+        ("hair", "hair"): "hair",
+    }
+    pieces = [FilePiece(1, np.arange(4), role, np.zeros(3), name) for name, role in roles]
+    assert [piece.role for piece in without_helpers(pieces)] == [*roles.values()]
