@@ -108,14 +108,18 @@ class Pull:
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
-            squares = [self._square(slope[self._vertices]) for slope in self._slope]
-            here = np.sqrt(squares)
-            motions = np.linalg.norm(self._slope, axis=2)
-            largest = motions.max(axis=1, initial=0.0)
-            # A control is not used if it moves the finger's skin less than this share of its
-            # largest motion of skin.
-            least_motion = 0.1
-            is_meant = here > least_motion * largest
+            centre = np.linalg.norm(
+                self._middle @ self._slope[:, self._vertices] @ self._seen, axis=1
+            )
+            largest = np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
+            fraction = centre / np.maximum(largest, 1e-12)
+            # A control is meant for other skin if the skin next to the mouse moves less than this
+            # share of the control's largest motion. Where all controls move the skin little, as on
+            # the nose, those that move it most are used.
+            least_of_largest = 0.25
+            least_of_best = 0.7
+            best = float(fraction.max(initial=0.0))
+            is_meant = fraction > min(least_of_largest, least_of_best * best)
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._limits = self._limits[:, is_meant]
             self._value = self._start = self._start[is_meant]

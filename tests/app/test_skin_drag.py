@@ -38,3 +38,21 @@ def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwan
     run(session, 60)
     moved = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0) - before
     assert moved[1] / up > 0.8
+
+
+def test_a_cheek_that_is_lifted_leaves_the_lid(session):
+    """Muscles of other skin are not used, although they move skin at the finger's rim.
+
+    A pull at the cheek below the lid also lifted the lower lid with full force.
+    """
+    positions = session.scene.positions
+    lid, corner = (positions[session.scene.landmarks[k]].mean(axis=0) for k in ([46, 47], [54]))
+    aim = 0.75 * lid + 0.25 * corner
+    aside = np.linalg.norm((positions - aim)[:, :2], axis=1)
+    place = positions[np.where(positions[:, 2] > aim[2] - 25.0, aside, np.inf).argmin()]
+    finger = SkinDrag(session, Settings(), place, SIGHT, poses=True)
+    finger.to(place + np.array([0.0, 4.0, 0.0]))
+    finger.let_go()
+    found = {name for name, value in session.values.items() if value}
+    assert "orbicularis_oculi_orbital_left" in found
+    assert not [name for name in found if "palpebral" in name]
