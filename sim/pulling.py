@@ -111,14 +111,13 @@ class Pull:
             centre = np.linalg.norm(
                 self._middle @ self._slope[:, self._vertices] @ self._seen, axis=1
             )
-            largest = np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
-            fraction = centre / np.maximum(largest, 1e-12)
+            fraction = centre / np.linalg.norm(self._slope, axis=2).max(axis=1, initial=1e-12)
             # A control is meant for other skin if the skin next to the mouse moves less than this
             # share of the control's largest motion. Where all controls move the skin little, as on
             # the nose, those that move it most are used.
             least_of_largest = 0.25
             least_of_best = 0.7
-            best = float(fraction.max(initial=0.0))
+            best = fraction.max(initial=0.0)
             is_meant = fraction > min(least_of_largest, least_of_best * best)
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._limits = self._limits[:, is_meant]
