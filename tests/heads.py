@@ -155,7 +155,8 @@ def masked() -> UserHead:
     """The built-in head with a slightly open mouth; triangles cover the mouth and the eyes."""
     head = assets.load("head")
     opening = np.array([0.0, -8.0, 0.0])  # [mm]
-    vertices = head.vertices + head.mandible_weight[:, None] * opening
+    lowered = np.clip(1.5 * head.mandible_weight - 0.5, 0.0, 1.0)  # the upper lip stays
+    vertices = head.vertices + lowered[:, None] * opening
     behind = ("mouth_0", "mouth_1", "eye_0", "eye_1")  # rings behind edges of lips and lids
     inner = [head.rings[f"{ring}_{side}"] for ring in behind for side in ("left", "right")]
     mesh = Mesh(vertices, head.faces[~np.isin(head.faces, np.concatenate(inner)).any(axis=1)])
