@@ -1,4 +1,4 @@
-"""How far the skin above the front edge of an upper lid comes down as the eye shuts.
+"""The motion of the skin above the front edge of an upper lid as the eye shuts.
 
 The lid's plate moves with the front edge, and the skin at the brow stays. Between them the fold
 opens: the motion fades with the distance from the edge along the skin. It fades later above the

@@ -17,7 +17,7 @@ ring of fibres is fixed. A raised lid slides a little away from the nose. Both l
 a little to the side, because the cornea draws them. The lids of each eye follow the gaze of that
 eye alone. The turn fades from the margin to the edge of the lid. The turn moves the far ends of the
 tissue springs instead of the skin, so skin still slides and is still kept off the eyeball.
-How far skin above the upper lid comes down is in lid_fold.py.
+lid_fold.py has the motion of the skin above the upper lid.
 
 Source: own; the papers close the eye by a sphincter, and skin then does not follow the eyeball.
 Angles from the visible lid margins.

@@ -34,8 +34,6 @@ ROLES = {  # role of a piece -> its motion
     "body": "body or clothes, does not move",
     "hidden": "is not drawn; its vertices stay in the file",
 }
-HELPERS = ("joint-", "helper-hair")  # names of MakeHuman's markers of joints, and of blank hair
-BLANKS = "helper-"  # beginning of the names of its other auxiliary geometry
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks without the jaw line
 BESIDE = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
@@ -105,8 +103,8 @@ def without_helpers(pieces: Sequence[FilePiece]) -> list[FilePiece]:
     """
     found = []
     for piece in pieces:
-        is_blank = piece.role in ("hair", "body") and piece.name.startswith(BLANKS)
-        is_hidden = is_blank or piece.name.startswith(HELPERS)
+        is_helper = piece.name.startswith("helper-") and piece.role in ("hair", "body")
+        is_hidden = is_helper or piece.name.startswith(("joint-", "helper-hair"))
         found.append(replace(piece, role="hidden") if is_hidden else piece)
     return found
 

@@ -226,8 +226,8 @@ def test_an_option_corrects_the_role_of_a_piece(whole, tmp_path):
     """An option corrects the role of pieces, and leaves out pieces; eyes turn by the shapes."""
     landmarks = whole.mesh.with_suffix(".json")
     path = tmp_path / "other.glb"
-    given = ("--piece", "tongue=hair", "--eyes", "targets", "--shapes", "expressions,arkit")
-    given = (*given, "--piece", "shirt=hidden")
+    corrections = ("--piece", "tongue=hair", "--piece", "shirt=hidden")
+    given = (*corrections, "--eyes", "targets", "--shapes", "expressions,arkit")
     succeeded("rig", whole.mesh, "--landmarks", landmarks, "-o", path, *given)
     player = Player(path)
     mesh = player.file.meshes[player.file.nodes[player.numbers["head"]].mesh]
