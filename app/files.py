@@ -19,7 +19,7 @@ from pathlib import Path
 
 from .errors import UserError
 from .staging import StagingFolder, is_staging_folder
-from .stopping import cleaned_up_if_stopped, done_whole
+from .stopping import cleaned_up_if_stopped, delay_signals
 from .text import as_text
 
 
@@ -89,7 +89,7 @@ def written_atomically(target: Path) -> Iterator[Path]:
     with temporary_folder(target, parent) as folder, cannot_be_written(target):
         part = folder / target.name
         yield part
-        with done_whole():
+        with delay_signals():
             for each in (*(item for item in folder.iterdir() if item != part), part):
                 os.replace(each, parent / each.name)
 
@@ -132,7 +132,7 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
                 target.mkdir(parents=True)
         temporary = stack.enter_context(temporary_folder(target, target))
         yield temporary
-        with done_whole(), cannot_be_written(target):  # no interruption between the two loops
+        with delay_signals(), cannot_be_written(target):  # no interruption between the two loops
             for old in target.iterdir():
                 if own.fullmatch(old.name):
                     old.unlink()

@@ -28,7 +28,7 @@ def cleaned_up_if_stopped(clean_up: Callable[[], object]) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def done_whole() -> Iterator[None]:
+def delay_signals() -> Iterator[None]:
     """Delay signals inside this block until its end; the block must be short."""
     global _is_postponing
     _is_postponing = True

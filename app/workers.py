@@ -141,13 +141,13 @@ def serve() -> None:
     writer = threading.Thread(target=hand_over)
     writer.start()
     threading.Thread(target=end_with_parent, daemon=True).start()
-    end = _done(*request, send=lambda each: waiting.put(pickle.dumps((Kind.MESSAGE, each))))
+    end = _outcome(*request, send=lambda each: waiting.put(pickle.dumps((Kind.MESSAGE, each))))
     waiting.put(pickle.dumps(end))
     waiting.put(b"")
     writer.join()
 
 
-def _done(
+def _outcome(
     work: Callable[..., object], arguments: Sequence[Any], *, send: Send
 ) -> tuple[Kind, tuple[str, str]]:
     """Do the work; return DONE, or FAILED with the reason in one line and the traceback."""
@@ -312,7 +312,7 @@ class Task:
 def count_frames(work: Callable[[], object], send: Send) -> None:
     """Do the work in this process, and repeatedly send the number of played frames."""
     is_done = threading.Event()
-    give_way(5)
+    lower_priority(5)
 
     def report() -> None:
         while not is_done.wait(0.2):  # [s] between two numbers
@@ -327,7 +327,7 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
         thread.join()
 
 
-def give_way(niceness: int) -> None:
+def lower_priority(niceness: int) -> None:
     """Lower the priority of this process below its parent's; niceness: 1 to 19."""
     if hasattr(os, "nice"):
         os.nice(niceness)

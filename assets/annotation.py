@@ -66,11 +66,11 @@ def annotation_of(head: Head | FittedHead) -> Annotation:
     For a user's head these are the points of its landmark file, because they are annotations.
     """
     if isinstance(head, Head | Person):
-        points, lanes = _of_built_in()
+        points, lanes = _built_in_lookup()
         return Annotation(_with_brows(head, points), lanes)
     known = load("head")
     warp = ThinPlateSpline(known.vertices[known.landmarks], head.vertices[head.landmarks])
-    lanes = _of_built_in()[1]
+    lanes = _built_in_lookup()[1]
     targets = warp.points(lanes.interpolate(known.vertices))
     normals = lanes.interpolate(vertex_normals(known.vertices, known.faces))
     marked = _vertices(head.landmarks[FIRST_INNER:])
@@ -78,7 +78,7 @@ def annotation_of(head: Head | FittedHead) -> Annotation:
 
 
 @lru_cache(maxsize=1)
-def _of_built_in() -> tuple[SurfacePoints, SurfacePoints]:
+def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
     """Return points and lanes on the triangles that all persons have."""
     table = read_toml(Path(__file__).with_name("annotation.toml"))
     known = load("head")
@@ -115,7 +115,7 @@ def _texture() -> MeshSearch:
     """Return the built-in head's skin, flattened by its texture coordinates."""
     known = load("head")
     level = np.zeros((len(known.uv), 1))
-    return MeshSearch.of(np.hstack([known.uv.astype(np.float64), level]), known.faces)
+    return MeshSearch.from_mesh(np.hstack([known.uv.astype(np.float64), level]), known.faces)
 
 
 def _vertices(numbers: Integers32) -> SurfacePoints:

@@ -31,7 +31,7 @@ MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 MOST_MEGABYTES = 100  # of one file that a document names
 
 
-def plain_chunks(content: bytes, folder: Path) -> tuple[bytes, bytes | None]:
+def decompressed_chunks(content: bytes, folder: Path) -> tuple[bytes, bytes | None]:
     """Return the document of a glTF or GLB file and its binary data, both without compression.
 
     folder: that of the file. A compressed file has all its data in the binary data that are

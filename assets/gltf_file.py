@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .errors import AssetError
-from .gltf_content import COMPONENTS, Buffers, content_of, plain_chunks
+from .gltf_content import COMPONENTS, Buffers, content_of, decompressed_chunks
 from .user_files import MOST_VERTICES, named
 
 
@@ -37,7 +37,7 @@ class GltfFile:
         """
         import pygltflib  # imported late, so that loading the built-in head is fast
 
-        text, data = plain_chunks(content, folder)
+        text, data = decompressed_chunks(content, folder)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # pygltflib would print them
             self.document = pygltflib.GLTF2.from_json(

@@ -114,7 +114,7 @@ class _Numbers:
         self._numbers = np.fromstring(plain_text(text), np.float64, sep=" ")
         self.place = 0
 
-    def take(self, kind: str, count: int) -> npt.NDArray[Any]:
+    def read(self, kind: str, count: int) -> npt.NDArray[Any]:
         """Read the next `count` numbers of a kind."""
         found = self._numbers[self.place : self.place + count]
         if not 0 <= count == len(found):
@@ -124,7 +124,7 @@ class _Numbers:
 
     def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
         """Read the next `count` rows of numbers of some kinds; return them by columns."""
-        columns = self.take("f8", len(kinds) * count).reshape(count, len(kinds)).T
+        columns = self.read("f8", len(kinds) * count).reshape(count, len(kinds)).T
         return [column.astype(kind) for column, kind in zip(columns, kinds, strict=True)]
 
 
@@ -136,7 +136,7 @@ class _Bytes:
         self._order = order
         self.place = 0
 
-    def take(self, kind: str, count: int) -> npt.NDArray[Any]:
+    def read(self, kind: str, count: int) -> npt.NDArray[Any]:
         """Read the next `count` numbers of a kind."""
         return self._rows(np.dtype(self._order + kind), count)
 
@@ -183,8 +183,8 @@ def _row(element: _Element, body: _Numbers | _Bytes) -> list[npt.NDArray[Any]]:
     """One row: the numbers of each list, and one number for each other property."""
     row = []
     for each in element.properties:
-        length = 1 if each.length is None else int(body.take(each.length, 1)[0])
-        row.append(body.take(each.kind, length))
+        length = 1 if each.length is None else int(body.read(each.length, 1)[0])
+        row.append(body.read(each.kind, length))
     return row
 
 

@@ -25,7 +25,7 @@ from risorius.app.rig.gltf_copy import read_document
 from risorius.app.rig.linearity import Difference
 from risorius.app.rig.surface import METRES
 from risorius.app.rig.writing import avatar_glb
-from risorius.app.scenes import own_head
+from risorius.app.scenes import fit_users_head
 from risorius.assets.fitting import FittedHead
 from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.assets.identities import person_called
@@ -120,7 +120,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
 def measured_file(head: HeadFile) -> Row:
     """Measure the avatar of a head from a file."""
     begin = time.perf_counter()
-    avatar = avatar_of(own_head(head.mesh, head.landmarks), _request(), _quiet)
+    avatar = avatar_of(fit_users_head(head.mesh, head.landmarks), _request(), _quiet)
     content = avatar_glb(avatar, head.name)
     seconds = time.perf_counter() - begin
     points, names = mesh_called("head", content)

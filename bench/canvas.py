@@ -90,7 +90,7 @@ class Canvas:
     def _draw(self, skin: render.Skin, drawing: Drawing) -> None:
         """Draw a skin, and the parts and lines of a drawing."""
         view = render.CameraView(drawing.camera)
-        parts = [render.PlacedPart.of(part, drawing.bones) for part in drawing.parts]
+        parts = [render.PlacedPart.on_bone(part, drawing.bones) for part in drawing.parts]
         lines = [] if drawing.lines is None else [drawing.lines]
         self.renderer.draw(render.Frame(view, drawing.style, skin, parts, overlays=lines))
 

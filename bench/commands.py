@@ -311,13 +311,13 @@ def bench_window(
     size: tuple[int, int], seconds: float, head: Path | None, landmarks: Path | None
 ) -> None:
     """Time the window while a smile plays, and while nothing happens; needs a screen."""
-    from risorius.app.scenes import own_head
+    from risorius.app.scenes import fit_users_head
 
     from . import window
 
     if landmarks is not None and head is None:
         raise UserError("--landmarks needs --head; add the mesh, or leave out --landmarks")
-    fitted = None if head is None else own_head(head, landmarks)
+    fitted = None if head is None else fit_users_head(head, landmarks)
     conclude(*window.measure(seconds, size, fitted))
 
 

@@ -31,12 +31,12 @@ class Row:
     """Published deviation of women."""
 
     @property
-    def apart(self) -> float:
+    def difference(self) -> float:
         """Mean of men minus mean of women [mm]."""
         return self.men - self.women
 
     @property
-    def published_apart(self) -> float:
+    def published_difference(self) -> float:
         """Published mean of men minus published mean of women [mm]."""
         return self.published_men - self.published_women
 
@@ -70,11 +70,11 @@ def report(rows: list[Row]) -> str:
     for row in rows:
         women = row.women, row.published_women
         men = row.men, row.published_men
-        cells.append((row.code, *women, *men, row.apart, row.published_apart))
+        cells.append((row.code, *women, *men, row.difference, row.published_difference))
     return "\n".join(["means [mm]", *table(columns, cells)])
 
 
 def targets(rows: list[Row]) -> list[Target]:
     """The targets: differences between the sexes are near the published ones."""
-    off = np.mean([abs(row.apart - row.published_apart) / row.deviation for row in rows])
+    off = np.mean([abs(row.difference - row.published_difference) / row.deviation for row in rows])
     return [at_most("sexes off the published distance, in deviations", float(off), 0.4)]

@@ -123,7 +123,7 @@ def measure(
                 distances = closest_points(pose.dense, positions, triangles).distances
                 ratio = len(triangles) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))
-                errors = _apart(_shoot(canvas, cameras, mesh), truth)
+                errors = _differences(_shoot(canvas, cameras, mesh), truth)
                 scores.append(Score(method, name, ratio, distance, *errors))
     return scores
 
@@ -186,7 +186,7 @@ def _shoot(
     return _block_means(np.where(covered, fine, level_behind)), covered
 
 
-def _apart(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[float, float]:
+def _differences(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[float, float]:
     """RMS difference in grey levels, and the mean number of wrong outline pixels per view."""
     (grey, covered) = shots
     (true_grey, true_covered) = truth

@@ -149,7 +149,7 @@ def _waved(rest: Points, phase: float) -> Points:
 
 def _face_cases(load: Load) -> list[_Case]:
     fine = assets.load("head").finer(1)
-    cases = [_own("none", load, "none")]
+    cases = [_our_case("none", load, "none")]
     # The paper's method, then the method with another scheme or option.
     methods: Mapping[str, Mapping[str, Any]] = {
         "kahler": {},
@@ -161,9 +161,9 @@ def _face_cases(load: Load) -> list[_Case]:
         "window's look": WINDOWS_LOOK,
     }
     for method, options in methods.items():
-        cases.append(_own(method, load, "kahler", **options))
+        cases.append(_our_case(method, load, "kahler", **options))
     cases += [_fixed("kahler", load, {}), _fixed("window's look", load, WINDOWS_LOOK)]
-    return [*cases, *(_own(f"uniform Loop {k}x", load, "loop", levels=k) for k in (1, 2))]
+    return [*cases, *(_our_case(f"uniform Loop {k}x", load, "loop", levels=k) for k in (1, 2))]
 
 
 def _waving_cases(load: Load) -> list[_Case]:
@@ -178,7 +178,7 @@ def _waving_cases(load: Load) -> list[_Case]:
     at_rest = cosines(load.rest)
     drops = np.concatenate([at_rest - cosines(frame) for frame in load.frames])
     cases = [
-        _own("smooth", load, "kahler", **WINDOWS_LOOK),
+        _our_case("smooth", load, "kahler", **WINDOWS_LOOK),
         _fixed("smooth", load, WINDOWS_LOOK),
     ]
     # Percentage of split edges -> quantiles of the drops for the two thresholds.
@@ -187,7 +187,7 @@ def _waving_cases(load: Load) -> list[_Case]:
         once, twice = (max(0.0, float(np.quantile(drops, quantile))) for quantile in quantiles)
         title = f"kahler {percent} %"
         limits = {"threshold_once": once, "threshold_twice": twice}
-        cases.append(_own(title, load, "kahler", **limits))
+        cases.append(_our_case(title, load, "kahler", **limits))
         cases.append(_fixed(title, load, limits))
     return cases
 
@@ -207,13 +207,13 @@ def _card_cases(load: Load) -> list[_Case]:
             card.refine_on_card(positions, out)
             own_context().gl.finish()
 
-        serial = _own(f"kahler, {title}", load, "kahler", **options)
+        serial = _our_case(f"kahler, {title}", load, "kahler", **options)
         on_card = _Case(f"kahler-gl, {title}", serial.triangles, partial(own.run, frame))
         cases += [serial, on_card]
     return cases
 
 
-def _own(method: str, load: Load, refiner: str, **options: Any) -> _Case:
+def _our_case(method: str, load: Load, refiner: str, **options: Any) -> _Case:
     """A case of one of our refiners; a first pass compiles kernels and counts triangles."""
     bound = refine.create(refiner, load.faces, load.rest, **options)
     counts = [len(bound.refine(frame).triangles) for frame in load.frames]
@@ -225,7 +225,7 @@ def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
     changing = refine.create("kahler", load.faces, load.rest, **options)
     splits = refine.splits_of_clip(changing, load.frames)
     others = {name: value for name, value in options.items() if name != "criterion"}
-    return _own(f"{method}, one topology", load, "kahler", splits=splits, **others)
+    return _our_case(f"{method}, one topology", load, "kahler", splits=splits, **others)
 
 
 def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:

@@ -117,7 +117,7 @@ def _idle_load(viewer: Viewer, *, is_alive: bool) -> float:
     """Fraction of one core that the window uses while nothing happens, or during idle motion."""
     viewer.session.neutral()
     viewer.settings.is_alive = is_alive
-    while not (viewer.schedule.is_left_alone if is_alive else viewer.schedule.is_idle):
+    while not (viewer.schedule.is_idling if is_alive else viewer.schedule.is_idle):
         viewer.frame()
     begin = time.perf_counter()
     used = time.process_time()

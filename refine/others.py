@@ -85,7 +85,7 @@ class Loop(BaseRefiner):
         super().__init__(faces, rest_positions, **values)
         LEVELS.check(levels)
         self.edge_splits[:] = levels
-        finest = _Refined.of(
+        finest = _Refined.from_mesh(
             self.connectivity, None if self._values is None else self._values.values
         )
         self._split = [finest.connectivity]
@@ -164,7 +164,7 @@ class _Refined:
     """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
 
     @classmethod
-    def of(cls, connectivity: Connectivity, values: Floats32 | None) -> "_Refined":
+    def from_mesh(cls, connectivity: Connectivity, values: Floats32 | None) -> "_Refined":
         """Take a mesh as it is."""
         face_count = len(connectivity.faces)
         return cls(

@@ -117,7 +117,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         Raises GpuError if the driver refuses a shader, or a mesh of this size.
         """
         super().__init__(faces, rest_positions, **values)
-        self._own(settings.criterion, *settings.criterion.parts)
+        self._claim(settings.criterion, *settings.criterion.parts)
         self.find_normals()
         self._rules = Rules(self.connectivity, self.rest_positions, self.normals, settings)
         none = np.zeros((len(self.rest_positions), 0), np.float32)
@@ -182,7 +182,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`."""
         if out is not None:
             return super().refine(positions, out, view, values)
-        self.take(positions, view, values)
+        self.take_frame(positions, view, values)
         return cast(RefinedMesh, self._refine_own(view))  # it has all members of a RefinedMesh
 
     def refine_on_card(
@@ -193,7 +193,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         values: Mapping[str, npt.ArrayLike] | None = None,
     ) -> RefinedMesh:
         """Refine into the buffers of a stream; see `GpuRefiner`."""
-        self.take(positions, view, values)
+        self.take_frame(positions, view, values)
         return cast(RefinedMesh, self._refine_in(out, operator.call, view))
 
     def follow_values(self) -> None:

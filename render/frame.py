@@ -86,7 +86,7 @@ class PlacedPart:
             object.__setattr__(self, name, getattr(self.part, name))
 
     @classmethod
-    def of(
+    def on_bone(
         cls,
         part: DrawnPart,
         transforms: Mapping[str, Floats64],

@@ -27,7 +27,7 @@ _DEPTHS = 255.0 * 255.0  # number of steps of a pixel's stored depth
 
 _Linear = tuple[float, float, float]  # a, b and c of the linear function a x + b y + c
 _Edges = tuple[_Linear, _Linear, _Linear]  # edge functions; number k belongs to the edge opposite k
-_Corner = tuple[float, float, float, float]  # a row of the argument `corners` of `see`
+_Corner = tuple[float, float, float, float]  # a row of the argument `corners` of `rasterise`
 
 
 class Pixels(NamedTuple):
@@ -109,7 +109,7 @@ def _mark_row(
 
 
 @njit
-def see(
+def rasterise(
     corners: Floats64,
     values: Floats64,
     triangles: Integers32,
@@ -134,11 +134,11 @@ def see(
     """
     for sign in (1.0, -1.0):  # fronts first, because backs behind them take little time
         if sign > 0.0 or has_back:
-            _see_side(sign, corners, values, triangles, kind, numbers, pixels, depths, seen)
+            _rasterise_side(sign, corners, values, triangles, kind, numbers, pixels, depths, seen)
 
 
 @njit
-def _see_side(
+def _rasterise_side(
     sign: float,
     corners: Floats64,
     values: Floats64,
@@ -149,7 +149,7 @@ def _see_side(
     depths: Floats64,
     seen: Floats64,
 ) -> None:
-    """Rasterise the fronts of triangles (sign 1) or the backs (sign -1); see `see`."""
+    """Rasterise the fronts of triangles (sign 1) or the backs (sign -1); see `rasterise`."""
     before, columns, _ = pixels
     height = before.shape[0]
     width = before.shape[1] - 1
@@ -309,7 +309,7 @@ def _number(
 ) -> float:
     """Return the surface number (surface_number.glsl); negative where there is no surface.
 
-    one, two: interpolated `values` of `see`.
+    one, two: interpolated `values` of `rasterise`.
     """
     if kind == HAIR:
         # As in shell_layers.glsl.
@@ -335,7 +335,7 @@ def mix(
     """Mix the colours (height, width, 4) of edge pixels by their samples; see mixing.glsl.
 
     depths: 0 to 1 over the depth range of the view, (n, number of samples). Other arguments: as in
-    `find_edges` and `see`.
+    `find_edges` and `rasterise`.
     """
     height, width, _ = colours.shape
     mixed = colours.copy()

@@ -18,7 +18,7 @@ from .coverage import SKIN_NUMBERS, Drawn, Numbers, part_numbers
 from .frame import Plane, Skin
 from .parts import PlacedBuffers
 from .render_target import Rectangle, RenderTarget, around
-from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, see
+from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, rasterise
 from .translucency import NOWHERE, SUNK_DEPTH, in_view
 
 _MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
@@ -26,7 +26,7 @@ _LOWEST_PLACE = 0.15  # LOWEST of shell_layers.glsl
 
 
 class _Surface(NamedTuple):
-    """A surface as `see` takes it, except that `corners` are in clip space, (V, 4)."""
+    """A surface as `rasterise` takes it, except that `corners` are in clip space, (V, 4)."""
 
     corners: Floats64
     values: Floats64
@@ -53,7 +53,7 @@ class SoftwareMixer:
         with np.errstate(all="ignore"):  # triangles with infinite corners are not drawn
             for surface in _surfaces(drawn, view):
                 placed = surface._replace(corners=surface.corners @ to_area)
-                see(*placed, pixels, depths, seen)
+                rasterise(*placed, pixels, depths, seen)
         least, scale = view.depth_range
         depths = np.clip((depths - least) * scale, 0.0, 1.0)
         mixed = mix(colours, surfaces, pixels, depths, seen, *view.depth_tolerance)
@@ -71,15 +71,15 @@ def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
 def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
     """Yield all surfaces that samples may see, in the order of coverage.py."""
     if drawn.skin is not None:
-        yield _of_skin(drawn, drawn.skin, view)
+        yield _skin_surface(drawn, drawn.skin, view)
     for each in drawn.parts:
         if each.buffers.kind == "SHELLS":
-            yield _of_hair(each, view)
+            yield _hair_surface(each, view)
         elif not each.buffers.strand_radius:
-            yield _of_part(each, drawn.cut if each.part.lies_beneath else None, view)
+            yield _part_surface(each, drawn.cut if each.part.lies_beneath else None, view)
 
 
-def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
+def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     """Return both sides of the skin."""
     mesh = skin.stream.mesh
     rows = mesh.vertices
@@ -94,7 +94,7 @@ def _of_skin(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     return _Surface(clip, values, mesh.triangles.view(np.int32), kind, SKIN_NUMBERS, True)
 
 
-def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
+def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
     """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
     positions = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
     clip = _moved(positions, view.projection)
@@ -109,7 +109,7 @@ def _of_part(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Sur
     return _Surface(clip, values, triangles, SURFACE, part_numbers(placed), False)
 
 
-def _of_hair(placed: PlacedBuffers, view: PlacedView) -> _Surface:
+def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     """Return the outline of short hair; see coverage.glsl."""
     striation = placed.part.part.striation
     assert striation is not None  # all short hair has it

@@ -33,7 +33,7 @@ class ColourBy(Enum):
     SPLIT_WIRES = "split wires"  # the same number, shown by outlines of split triangles
 
     @classmethod
-    def of(cls, *, splits: bool, wires: bool) -> Self:
+    def from_switches(cls, *, splits: bool, wires: bool) -> Self:
         """Return the member for two switches; if both are set, `splits` decides."""
         if splits:
             return cls.SPLITS

@@ -148,7 +148,7 @@ class Cells(NamedTuple):
         """Number of points of each cell, shape (C,)."""
         return np.diff(self.starts)
 
-    def of(self, cell: int) -> Integers64:
+    def points_of(self, cell: int) -> Integers64:
         """The points of one cell."""
         return self.points[self.starts[cell] : self.starts[cell + 1]]
 
@@ -172,7 +172,7 @@ def triangles_of(mesh: pyvista.PolyData) -> tuple[Integers64, Integers64]:
     triangles.append(cut)
     cells.append(first_polygon + polygon_of)
     for k in np.flatnonzero(strips.sizes >= 3).tolist():
-        strip = strips.of(k)
+        strip = strips.points_of(k)
         along = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1)
         along[1::2] = along[1::2, [1, 0, 2]]  # every second triangle of a strip runs backwards
         triangles.append(along)
@@ -216,7 +216,7 @@ def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, I
     fans: list[tuple[int, int, int]] = []
     fan_of: list[int] = []
     for k in large[counts[large] < polygons.sizes[large] - 2].tolist():
-        polygon = polygons.of(k)
+        polygon = polygons.points_of(k)
         corners = polygon[polygon != np.roll(polygon, 1)].tolist()
         if counts[k] < len(set(corners)) - 2:
             fan = [(corners[0], b, c) for b, c in pairwise(corners[1:])]

@@ -82,14 +82,14 @@ class Within:
         """The check of a number of the annotated kinds."""
         if get_origin(source) is tuple:
             schema = core_schema.tuple_schema(
-                list(map(self._of_one, get_args(source))), strict=True
+                list(map(self._check_one, get_args(source))), strict=True
             )
             return core_schema.no_info_before_validator_function(
                 lambda given: tuple(given) if isinstance(given, list) else given, schema
             )
-        return self._of_one(source)
+        return self._check_one(source)
 
-    def _of_one(self, source: Any) -> CoreSchema:
+    def _check_one(self, source: Any) -> CoreSchema:
         limits: dict[str, Any] = {"ge": self.low, "le": self.high, "strict": True}
         is_whole = source is int
         schema = (
@@ -205,7 +205,7 @@ def read(
         raise error(_line(where, problem.errors(include_url=False)[0])) from None
 
 
-def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
+def read_valid_entries(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
     """Return a record of the allowed entries of a table, and a message for each other entry.
 
     It is for settings: the program must start even if the file comes from another version or was

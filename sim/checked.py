@@ -38,7 +38,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
     """
     wanted = wanted or str(shape)
     array = _array(what, given, "fiub", f"numbers, shape {wanted}")
-    if not _fits(array, shape):
+    if not _has_shape(array, shape):
         raise ValueError(f"{what}: shape was {array.shape}, must be {wanted} and finite")
     with np.errstate(all="ignore"):  # numbers of a wider type may overflow to infinity
         result: Floats64 = np.array(array, dtype=np.float64, order="C")
@@ -53,7 +53,7 @@ def vertex_indices(
     """Copy vertex indices in C order; wanted: words for the allowed values."""
     array = _array(what, given, "fiub", wanted)
     is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no type
-    if not is_whole or not _fits(array, shape):
+    if not is_whole or not _has_shape(array, shape):
         raise ValueError(f"{what}: was {array.dtype} of shape {array.shape}, must be {wanted}")
     if array.size and (array.min() < 0 or array.max() >= vertex_count):
         raise ValueError(
@@ -88,6 +88,6 @@ def _array(what: str, given: Any, kinds: str, wanted: str) -> npt.NDArray[Any]:
     return array
 
 
-def _fits(array: npt.NDArray[Any], shape: Shape) -> bool:
+def _has_shape(array: npt.NDArray[Any], shape: Shape) -> bool:
     pairs = zip(array.shape, shape, strict=False)
     return array.ndim == len(shape) and all(want in (None, has) for has, want in pairs)

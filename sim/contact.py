@@ -44,7 +44,7 @@ class LipPairs(NamedTuple):
     averaging: Floats64  # (P,) 1 / the number of pairs that share its vertices
     members: Integers32  # (M,) all vertices in pairs
 
-    def apart(self, values: Floats64) -> Floats64:
+    def separations(self, values: Floats64) -> Floats64:
         """Return for each pair the value at the vertex, minus the value at the point, (P, 3).
 
         values: a vector for each vertex, (V, 3).
@@ -60,8 +60,8 @@ class LipPairs(NamedTuple):
         rest: vertices at rest, (V, 3). pressed: depth that is subtracted, because lips are pressed.
         A lower lip in front of the upper lip, or rolled in behind it (substep.py), does not count.
         """
-        forward = self.apart(x - rest)[:, 2]
-        crossing = self.least_gap - pressed + self.below * self.apart(x)[:, 1]
+        forward = self.separations(x - rest)[:, 2]
+        crossing = self.least_gap - pressed + self.below * self.separations(x)[:, 1]
         return float(np.where(np.abs(forward) < SLIDE_DISTANCE, crossing, 0.0).max(initial=0.0))
 
 
@@ -72,7 +72,7 @@ class Grip(NamedTuple):
     overlap: float  # mm by which the lips are pressed into each other
 
     @classmethod
-    def of(cls, strength: float, activity: float) -> Grip:
+    def from_seal(cls, strength: float, activity: float) -> Grip:
         """Grip of a seal with `strength` 0 (broken) .. 1, under muscles with `activity` 0 .. 1.
 
         At full strength the seal is stronger than every muscle. It must weaken early, or the mouth
@@ -84,7 +84,7 @@ class Grip(NamedTuple):
         return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / full_press_activity, 1.0))
 
 
-SEALED = Grip.of(1.0, 0.0)
+SEALED = Grip.from_seal(1.0, 0.0)
 
 
 def pair_lips(
@@ -157,7 +157,7 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     strength = seal * surface.areas[vertex]
     members = np.flatnonzero(count).astype(np.int32)
     lips = LipPairs(vertex, beside, weight, below, weight, strength, 1.0 / most, members)
-    gap = -below * lips.apart(surface.positions)[:, 1]
+    gap = -below * lips.separations(surface.positions)[:, 1]
     return lips._replace(least_gap=np.minimum(gap, 0.0))
 
 

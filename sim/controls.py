@@ -159,13 +159,13 @@ class Controls:
         wanted = others.copy()
         for name, value in values.items():
             wanted[self.place(name)] = finite(f"control '{name}'", value)
-        self._take(wanted)
+        self._store(wanted)
 
-    def take(self, values: npt.ArrayLike) -> None:
+    def set_array(self, values: npt.ArrayLike) -> None:
         """Set all controls to values in the order of `names`; if one is wrong, none is set."""
-        self._take(numbers("values", values, self._values.shape))
+        self._store(numbers("values", values, self._values.shape))
 
-    def _take(self, wanted: Floats64) -> None:
+    def _store(self, wanted: Floats64) -> None:
         is_beyond = (wanted < self._least) | (wanted > self._most)
         if is_beyond.any():
             place = int(is_beyond.argmax())

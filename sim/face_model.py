@@ -69,7 +69,7 @@ class FaceModel(Foundation):
         strength *= 1.0 - SEAL_LOST_BY_THRUST * max(jaw[1], 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
         activity = float((activation * muscles.reaches_lips).max(initial=max(map(abs, jaw))))
-        return Grip.of(strength, activity)
+        return Grip.from_seal(strength, activity)
 
 
 def build_face_model(head: Any) -> FaceModel:
@@ -140,7 +140,7 @@ def _assembled(
     septum = np.zeros((0, 3)) if landmarks is None else landmarks[nose]
     springs = TissueSprings.under(surface, rig.tissue, septum)
     edges = EdgeSprings.along(surface, rig.tissue, corners)
-    passive, greatest = _holds(muscles, lids, surface.vertex_count)
+    passive, greatest = _stiffnesses(muscles, lids, surface.vertex_count)
     skin = SkinModel(
         rest=surface.positions,
         mass=_masses(surface, springs, edges, greatest),
@@ -171,7 +171,7 @@ def _masses(
     return masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN)
 
 
-def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats64, Floats64]:
+def _stiffnesses(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Floats64, Floats64]:
     """Stiffness of relaxed and of fully active muscles, lids included, per vertex."""
     greatest = muscles.hold_of(np.ones_like(muscles.skin.passive), count)
     passive = muscles.hold_of(muscles.skin.passive, count)

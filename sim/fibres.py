@@ -107,7 +107,7 @@ class LineMotion(NamedTuple):
     is_carried: Flags  # (B,) whether any muscle beneath moves
 
     @classmethod
-    def of(cls, line_count: int) -> LineMotion:
+    def allocate(cls, line_count: int) -> LineMotion:
         """Allocate the displacements of this many lines."""
         return cls(
             np.zeros((line_count, SAMPLES, 3)),

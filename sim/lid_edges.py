@@ -58,7 +58,7 @@ def _front_edge(surface: SkinSurface, line: Floats64, axes: LidAxes) -> Integers
     expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
     edge_cost = 0.3  # cost per mm off the landmarks' distance from the eyeball, where no edge is
     behind = edge_cost * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
-    edge: Integers32 = surface.way_through(surface.nearest(line), behind)
+    edge: Integers32 = surface.path_through(surface.nearest(line), behind)
     return edge
 
 

@@ -253,7 +253,7 @@ def _one_eye(
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    sink = _proud_sink(upper, lower, column, full) * is_upper * weight
+    sink = _margin_sink(upper, lower, column, full) * is_upper * weight
     margin_turn = np.maximum(np.interp(column, where, upper.front - seam), 0.1)
     sink += is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
     least_turn = 1e-3  # vertices that move less do not belong to the lids
@@ -264,7 +264,7 @@ def _one_eye(
     return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
 
 
-def _proud_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
+def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
     """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
     where = np.linspace(0.0, 1.0, COLUMNS)

@@ -95,10 +95,10 @@ class Pull:
         self._drawn = 0.0  # mean square distance to the aims
         self.mends = False
 
-    def _look(self) -> bool:
+    def _choose_candidates(self) -> bool:
         """Find the controls that matter, and slopes; False if none matters."""
         if self._given:
-            self.candidates = self._near(self._given)
+            self.candidates = self._strongest(self._given)
             self._given = ()
             controls = self._home.controls
             firsts = [names[0] for names in self.candidates]
@@ -135,25 +135,25 @@ class Pull:
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
     @property
-    def short(self) -> float:
+    def remaining(self) -> float:
         """Remaining distance of the finger's centre from its target, as seen [head units]."""
         there = self._base.positions if self.mends else self._from
-        return float(np.linalg.norm(self._left(self.targets, there)))
+        return float(np.linalg.norm(self._remaining_vector(self.targets, there)))
 
-    def _left(self, targets: Floats64, positions: Floats64) -> Floats64:
+    def _remaining_vector(self, targets: Floats64, positions: Floats64) -> Floats64:
         """Vector from vertices (V, 3) to targets (n, 3) in the finger's middle, as seen, (3,)."""
         return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
     def solve(self) -> None:
         """Solve for these targets; earlier targets have no influence."""
-        if not self._look():
+        if not self._choose_candidates():
             return
         self._base.copy_from(self._home)
         self._slope[:] = self._first
         self._value = self._start
         self._aim()
-        needed = self._more(np.zeros(len(self._start), np.bool_))
-        while (more := self._more(needed)).sum() > needed.sum():
+        needed = self._with_best(np.zeros(len(self._start), np.bool_))
+        while (more := self._with_best(needed)).sum() > needed.sum():
             needed = more
         most_rounds = 12  # of Gauss and Newton at most
         for _ in range(most_rounds):
@@ -163,9 +163,9 @@ class Pull:
             if np.abs(self._value - before).max(initial=0.0) < self.ROUND_TOLERANCE:
                 break
             self._measure(np.flatnonzero(self._value != self._start))
-            needed = self._more(needed)
+            needed = self._with_best(needed)
         least_gain = 0.25  # of the squared distances: an answer must reduce them by at least this
-        self.mends = self._off(self._base.positions) < (1.0 - least_gain) * self._drawn
+        self.mends = self._squared_error(self._base.positions) < (1.0 - least_gain) * self._drawn
         if self.mends:
             self._stretch()
 
@@ -176,10 +176,10 @@ class Pull:
 
     def _stretch(self) -> None:
         """Let all changes grow by one factor until the finger's middle is nearest to the mouse."""
-        drawn = self._left(self.targets, self._from)
+        drawn = self._remaining_vector(self.targets, self._from)
         most_rounds = 6  # the skin's motion is not proportional
         for _ in range(most_rounds):
-            went = drawn - self._left(self.targets, self._base.positions)
+            went = drawn - self._remaining_vector(self.targets, self._base.positions)
             changed = self._value - self._start
             moved = changed != 0.0
             ends = np.where(changed > 0.0, self._high, self._low) - self._start
@@ -209,9 +209,9 @@ class Pull:
         reach = float((along * room).max())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
-        self._drawn = max(self._off(self._from), 1e-12)
+        self._drawn = max(self._squared_error(self._from), 1e-12)
 
-    def _near(self, candidates: Sequence[Names]) -> list[Names]:
+    def _strongest(self, candidates: Sequence[Names]) -> list[Names]:
         """Return the candidates that move the finger's skin most within a step."""
         moved = []
         for names in candidates:
@@ -228,7 +228,7 @@ class Pull:
         """Mean square of distances (n, 3) under the finger, as seen."""
         return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
 
-    def _off(self, positions: Floats64) -> float:
+    def _squared_error(self, positions: Floats64) -> float:
         """Mean square distance of vertices (V, 3) under the finger from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
@@ -250,7 +250,7 @@ class Pull:
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _more(self, needed: Flags) -> Flags:
+    def _with_best(self, needed: Flags) -> Flags:
         """Return the used controls and the control that improves most together with them."""
         if needed.sum() >= self.MOST_CONTROLS:
             return needed

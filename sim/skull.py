@@ -42,14 +42,14 @@ class RigidMotion(NamedTuple):
     shift: Floats64  # (3,)
 
     @classmethod
-    def of(cls, rotation: Floats64, shift: Floats64) -> RigidMotion:
+    def frozen(cls, rotation: Floats64, shift: Floats64) -> RigidMotion:
         """Return a motion with read-only arrays, because several faces may share it."""
         return cls(read_only(rotation), read_only(shift))
 
     @classmethod
     def about(cls, pivot: Floats64, rotation: Floats64) -> RigidMotion:
         """Make a rotation about `pivot`, (3,) [mm], by a matrix (3, 3)."""
-        return cls.of(rotation, pivot - rotation @ pivot)
+        return cls.frozen(rotation, pivot - rotation @ pivot)
 
     def displacements(self, points: Floats64) -> Floats64:
         """Return the displacements of points (..., 3)."""
@@ -59,7 +59,7 @@ class RigidMotion(NamedTuple):
         """The motion `first`, followed by this one."""
         rotation = self.rotation @ first.rotation
         shift = self.rotation @ first.shift + self.shift
-        return RigidMotion.of(rotation, shift)
+        return RigidMotion.frozen(rotation, shift)
 
     def matrix(self, space: FaceSpace) -> Floats64:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
@@ -67,7 +67,7 @@ class RigidMotion(NamedTuple):
         return result
 
 
-REST = RigidMotion.of(np.eye(3), np.zeros(3))
+REST = RigidMotion.frozen(np.eye(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Skull:
             -math.radians(head.pitch_deg) * pitch,
             -math.radians(head.roll_deg) * roll,
         )
-        return RigidMotion.of(*turn_head(self.condyles, head.joint, angles))
+        return RigidMotion.frozen(*turn_head(self.condyles, head.joint, angles))
 
     def mandible_motion(self, opening: float, forward: float, sideways: float) -> RigidMotion:
         """Motion of the mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
@@ -119,7 +119,7 @@ class Skull:
         # Share of the way forward: a human jaw moves back by two millimetres at most.
         backward_share = 0.15
         values = opening, max(forward, backward_share * forward), sideways
-        return RigidMotion.of(*move_mandible(self.condyles, glides, angles, values))
+        return RigidMotion.frozen(*move_mandible(self.condyles, glides, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """Motion of an eyeball that looks to the subject's left (+1) and up (+1)."""

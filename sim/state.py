@@ -52,5 +52,5 @@ class State(NamedTuple):
             gain=np.zeros(scalar),
             work=np.zeros(vector),
             tension=np.zeros(len(surface.edges)),
-            lines=LineMotion.of(line_count),
+            lines=LineMotion.allocate(line_count),
         )

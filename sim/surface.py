@@ -62,7 +62,7 @@ class SkinSurface:
         distance = csgraph.dijkstra(graph, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
-    def way_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
+    def path_through(self, vertices: npt.ArrayLike, hindrance: Floats64) -> Integers32:
         """Return the vertices of shortest paths along edges between consecutive given vertices.
 
         hindrance: for each vertex, shape (V,). An edge counts as its length times (1 + the mean

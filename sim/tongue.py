@@ -90,13 +90,13 @@ class Tongue:
         half_lip = max(abs(sides[0, 0] - sides[1, 0]) / 2.0, 1.0)
         hollow = risen * over_lip * rise / half_lip**2
 
-        def here(samples: Floats64) -> Floats64:
+        def at_vertices(samples: Floats64) -> Floats64:
             return np.interp(self.along, place, samples)
 
         beside = self.rest[:, 0] * slender
-        off = self.off * here(height) * slender
-        off += here(hollow) * beside**2
-        off -= here(sunk)
+        off = self.off * at_vertices(height) * slender
+        off += at_vertices(hollow) * beside**2
+        off -= at_vertices(sunk)
         # A flat tongue has a groove in its middle, which ends before the tip.
         groove_depth = 1.6  # mm at most
         groove_width = 2.6  # mm
@@ -104,8 +104,8 @@ class Tongue:
         off -= groove * np.exp(-((beside / groove_width) ** 2)) * (self.off > 0.0)
         bent = self.rest.copy()
         bent[:, 0] = beside
-        bent[:, 1] = here(spine[:, 1]) + off * np.cos(here(turn))
-        bent[:, 2] = here(spine[:, 0]) - off * np.sin(here(turn))
+        bent[:, 1] = at_vertices(spine[:, 1]) + off * np.cos(at_vertices(turn))
+        bent[:, 2] = at_vertices(spine[:, 0]) - off * np.sin(at_vertices(turn))
         return bent
 
     def _passage(self, lips: Floats64, upper_edge: Floats64) -> tuple[float, float]:

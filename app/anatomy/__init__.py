@@ -73,7 +73,7 @@ class Anatomy:
         scene = self._scene
         face = scene.face
         bones = scene.bone_transforms()
-        place = render.PlacedPart.of
+        place = render.PlacedPart.on_bone
         if face is None or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
             openings = self._openings()
@@ -99,7 +99,7 @@ class Anatomy:
             for part in (*stay, *self._soft(view))
             for half, opening in self._lit(face, view, part, openings)
         ]
-        hair = self._whole_hair(face, view) if has_hair else []
+        hair = self._hair_on_opaque_side(face, view) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
         return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
 
@@ -125,7 +125,7 @@ class Anatomy:
         now = np.concatenate([face.simulation.positions, *bones.values()], axis=None)
         now = np.append(now, list(sums.values()))
         if self._muscles is None:
-            self._muscles = Muscles.of(face)
+            self._muscles = Muscles.from_face(face)
         elif not np.array_equal(now, self._followed):
             self._muscles.follow(face)
         self._followed = now
@@ -136,7 +136,7 @@ class Anatomy:
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
 
-    def _whole_hair(self, face: Face, view: AnatomyView) -> list[Any]:
+    def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[Any]:
         """Return the hair on the opaque side; none if both sides are translucent."""
         side = SIDES[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]

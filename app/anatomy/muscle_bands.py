@@ -64,7 +64,7 @@ class Muscles:
     strand_radius: float = 0.0
 
     @classmethod
-    def of(cls, face: Face) -> Muscles:
+    def from_face(cls, face: Face) -> Muscles:
         """Make the muscles of a face in their current state."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])

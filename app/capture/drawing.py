@@ -29,7 +29,7 @@ DEFAULT_VIEW = "front"  # the face looks at the viewer
 MARGIN = 0.05  # share of the frame that stays free on each side
 
 
-def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
+def camera_for_whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
     """Return the camera of `camera_for`, moved away until it sees the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance

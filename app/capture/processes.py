@@ -62,7 +62,7 @@ def drawing(
         for drawer in drawers:
             drawer.process.kill()
 
-    def take(messages: Iterator[Frame | None]) -> Frame:
+    def next_frame(messages: Iterator[Frame | None]) -> Frame:
         """Return the next frame of a process; for None return the last frame again."""
         try:
             frame = next(messages)
@@ -82,7 +82,7 @@ def drawing(
                 drawers.append(Worker(_draw, FrameSubset(script, options, until, first, count)))
             drawn = [drawer.messages() for drawer in drawers]
             for index in counted_frames(until, rate, progress=progress):
-                yield index / rate, partial(take, drawn[index % count])
+                yield index / rate, partial(next_frame, drawn[index % count])
         finally:
             stop()
             for drawer in drawers:

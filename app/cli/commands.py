@@ -253,11 +253,11 @@ def open_window(
             if listening is not None:
                 line = viewer.context.live.start(listening)
                 if line and not viewer.messages.text:  # an error stays on screen
-                    viewer.messages.say(line)
+                    viewer.messages.show(line)
             if mesh is not None and head is None:
                 viewer.read(mesh, drawing.landmarks)()
                 if complaint:
-                    viewer.messages.say(complaint, stays=True)
+                    viewer.messages.show(complaint, stays=True)
             viewer.run(playing=playing, once=once)
 
 

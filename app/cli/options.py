@@ -140,9 +140,9 @@ class Subject:
             from ..scenes import called_head
 
             return called_head(self.head)
-        from ..scenes import own_head
+        from ..scenes import fit_users_head
 
-        return own_head(self.head, self.landmarks)
+        return fit_users_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:
         """Return how the mesh is refined; raise UserError for an unknown refiner."""
@@ -217,7 +217,7 @@ class Drawing(Subject):
         skin = wanted["skin"]
         return render.Style(
             wireframe=wanted["wireframe"],
-            colour_by=render.ColourBy.of(splits=wanted["splits"], wires=wanted["wires"]),
+            colour_by=render.ColourBy.from_switches(splits=wanted["splits"], wires=wanted["wires"]),
             textured=skin == "textured",
             albedo=render.CLAY if skin == "clay" else render.SKIN,
             bumps=wanted["wrinkles"],

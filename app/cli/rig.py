@@ -82,7 +82,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """
     from ..rig.avatar import RigRequest, avatar_of
     from ..rig.writing import write_avatar
-    from ..scenes import called_head, own_head
+    from ..scenes import called_head, fit_users_head
 
     file_path = head if isinstance(head, Path) else None
     if file_path is None and rigging.landmarks is not None:
@@ -101,7 +101,7 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
         chooses_by_take=rigging.take is not None,
     )
 
-    def say(line: str) -> None:
+    def print_line(line: str) -> None:
         """Print a line about the head, unless --quiet is set."""
         if not rigging.quiet:
             click.echo(in_one_line(line), err=True)
@@ -109,12 +109,12 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     fitted = None
     title = "head"
     if file_path is not None:
-        fitted = own_head(file_path, rigging.landmarks)
+        fitted = fit_users_head(file_path, rigging.landmarks)
         title = file_path.stem
     elif head is not None and not isinstance(head, Path):
         fitted = called_head(head)
         title = f"head {head}"
-    avatar = avatar_of(fitted, request, say)
+    avatar = avatar_of(fitted, request, print_line)
     size, meshes = write_avatar(avatar, output, title, is_folder=is_folder)
     in_meshes = "1 mesh" if meshes == 1 else f"{meshes} meshes"
     shapes = counted(len(avatar.names), "shape")

@@ -47,7 +47,7 @@ class SetFolder:
         return self.path / UNFINISHED / "log"
 
     @contextlib.contextmanager
-    def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
+    def opened(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume a set; within this context, lock the folder.
 
         options: all options that determine the samples, as JSON values. Raises UserError if the

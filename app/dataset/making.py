@@ -16,7 +16,7 @@ from .folder import SetFolder
 from .packing import Packing
 from .request import SetRequest
 from .sampling import draw
-from .sharing import MadeSample, SampleBatch, made_on_cluster, make_samples
+from .sharing import MadeSample, SampleBatch, make_on_cluster, make_samples
 from .summary import card_of, write_index
 
 
@@ -50,7 +50,7 @@ def make_set(
     """
     folder = SetFolder(request.output)
     numbers = range(first, first + count)
-    with folder.held(request.options(), resume=resume):
+    with folder.opened(request.options(), resume=resume):
         _check(folder, numbers)
         packing = Packing(folder, request.shards, numbers) if request.shards else None
         if packing:
@@ -64,13 +64,13 @@ def make_set(
         else:
             # A lost batch loses all its samples, but each batch takes two seconds to start.
             each = min(max(len(missing) // 64, 8), 64)
-            arriving = made_on_cluster(folder, _batches(request, missing, each), scheduler)
+            arriving = make_on_cluster(folder, _batches(request, missing, each), scheduler)
         size = 0
         is_silent = not progress or None
         made = count - len(missing)
         bar = tqdm(total=count, initial=made, unit="sample", disable=is_silent, leave=False)
         with cleaned_up_if_stopped(bar.close), bar:
-            for number, bytes_of_sample in _with_advice(_put_in_place(folder, missing, arriving)):
+            for number, bytes_of_sample in _with_advice(_store_samples(folder, missing, arriving)):
                 size += bytes_of_sample
                 if packing:
                     packing.add(number)
@@ -111,7 +111,7 @@ def _batches(request: SetRequest, missing: Sequence[int], each: int) -> list[Sam
     ]
 
 
-def _put_in_place(
+def _store_samples(
     folder: SetFolder, missing: Iterable[int], arriving: Iterator[MadeSample]
 ) -> Iterator[tuple[int, int]]:
     """Yield number and size [bytes] of each missing sample, after its files are in place."""

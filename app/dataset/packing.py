@@ -55,13 +55,13 @@ class Packing:
         for number in missing:
             self._waiting[number // self._size].add(number)
         for place in sorted(self._waiting):
-            self._pack_if_whole(place)
+            self._pack_if_complete(place)
 
     def add(self, number: int) -> None:
         """Note a finished sample; if it was the last of its shard, pack the shard."""
         place = number // self._size
         self._waiting[place].discard(number)
-        self._pack_if_whole(place)
+        self._pack_if_complete(place)
 
     def labels_and_place(self, number: int) -> tuple[dict[str, Any], dict[str, str | int]]:
         """Return the labels of a sample, and its position in its shard."""
@@ -73,7 +73,7 @@ class Packing:
         last = min(first + self._size, self._numbers.stop)
         return list(range(max(first, self._numbers.start), last))
 
-    def _pack_if_whole(self, place: int) -> None:
+    def _pack_if_complete(self, place: int) -> None:
         if place in self._packed or self._waiting[place]:
             return
         wanted = self._wanted(place)

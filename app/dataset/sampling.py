@@ -187,7 +187,7 @@ class _Face:
 
     def _add(self, unit: str, value: float) -> bool:
         """Add a unit, unless another unit excludes it; return whether it was added."""
-        is_possible = self._table.goes_with(unit, self.controls)
+        is_possible = self._table.can_be_combined(unit, self.controls)
         if is_possible:
             self.controls[unit] = min(value, 1.0)
         return is_possible

@@ -71,10 +71,10 @@ def make_samples(batch: SampleBatch, send: Send) -> None:
             size = 0
             if not folder.has(number):  # an earlier process may have made it and died
                 size = folder.write_sample(number, studio.shoot(number).save)
-            send(MadeSample(number, size, {} if is_seen else _taken(folder, number)))
+            send(MadeSample(number, size, {} if is_seen else _read_and_remove(folder, number)))
 
 
-def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
+def _read_and_remove(folder: SetFolder, number: int) -> dict[str, bytes]:
     """Read and remove a sample's files; return name -> content."""
     files = {path: path.read_bytes() for path in folder.files_of(number)}
     for path in files:
@@ -82,7 +82,7 @@ def _taken(folder: SetFolder, number: int) -> dict[str, bytes]:
     return {path.name: content for path, content in files.items()}
 
 
-def made_on_cluster(
+def make_on_cluster(
     folder: SetFolder, batches: Sequence[SampleBatch], scheduler: str
 ) -> Iterator[MadeSample]:
     """Let a Dask cluster make samples, and yield them; the first failure raises UserError."""
@@ -104,11 +104,11 @@ def _make_on_worker(pool: WorkerPool, batch: SampleBatch) -> list[MadeSample] | 
     """Make a batch in a process of a Dask worker; return the samples, or the text of an error."""
     made: dict[int, MadeSample] = {}  # a process that died may have sent some of them already
 
-    def keep(sample: MadeSample) -> None:
+    def collect(sample: MadeSample) -> None:
         made[sample.number] = sample
 
     try:
-        pool.run(make_samples, batch, on_message=keep)
+        pool.run(make_samples, batch, on_message=collect)
     except UserError as error:
         return f"{socket.gethostname()}: {error}"
     return [*made.values()]

@@ -18,9 +18,9 @@ import PIL.Image
 from risorius import render
 from risorius.assets import Segment
 from risorius.assets.identities import (
+    colours_of_number,
     in_colours,
     make_person,
-    own_colours,
     sample_identity,
     wearing,
 )
@@ -137,7 +137,7 @@ class Studio:
         """Build person `number` of the table's population."""
         population = self._request.table.population
         person = make_person(sample_identity(number, population=population))
-        colours = own_colours(person.identity, number, population=population)
+        colours = colours_of_number(person.identity, number, population=population)
         random = np.random.default_rng([number, 19])  # 18 is the stream of colours
         shirt = chosen(random, self._request.table.shirts)
         glasses = chosen(random, self._request.table.glasses)
@@ -212,7 +212,7 @@ def _camera_of(scene: FaceScene, view: SampleCamera, size: tuple[int, int]) -> r
     camera.zoom(view.zoom)
     camera.pan(*view.shift)
     for _ in range(3):  # perspective makes one round inexact
-        pixels = CameraLabels.of(camera, size).project(scene.positions[scene.landmarks])
+        pixels = CameraLabels.from_camera(camera, size).project(scene.positions[scene.landmarks])
         fractions = pixels / size[1]
         end = np.array([size[0] / size[1], 1.0]) - margin
         right, down = np.maximum(fractions.max(axis=0) - end, 0.0) - np.maximum(

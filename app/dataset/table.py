@@ -48,7 +48,7 @@ def _units() -> list[str]:
     return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
 
 
-def _drawn(weights: dict[str, float]) -> Weights:
+def _shares(weights: dict[str, float]) -> Weights:
     """Return shares for a random choice; if all are 0, raise ValueError."""
     if not any(weights.values()):
         raise ValueError("all shares are 0; at least one must be above 0")
@@ -68,7 +68,7 @@ def _between(low: float, high: float) -> MadeFrom:
 
 def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
     """Return the type of a table that maps some of the given names to weights."""
-    return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _drawn)
+    return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _shares)
 
 
 Weight = Annotated[float, Within(0.0, 1e6)]
@@ -97,7 +97,7 @@ class Expression(Record):
 
 
 def _expressions(rows: dict[str, Expression]) -> Mapping[str, Expression]:
-    _drawn({name: row.share for name, row in rows.items()})
+    _shares({name: row.share for name, row in rows.items()})
     return rows
 
 
@@ -215,7 +215,7 @@ class SampleTable(Record):
             self.cuts_of_men,
         )
 
-    def goes_with(self, unit: str, others: Container[str]) -> bool:
+    def can_be_combined(self, unit: str, others: Container[str]) -> bool:
         """Whether a unit may be combined with other units."""
         excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
         return not any(other in others for pair in excluded for other in pair)

@@ -177,11 +177,11 @@ def frame_surfaces(
     for frame in range(clip.frame_count):
         skin = None if skins is None else next(skins)
         plain = clip.surfaces if skin is None else clip.surfaces[1:]
-        rest = [_plain(each, frame) for each in plain]
+        rest = [_unrefined(each, frame) for each in plain]
         yield rest if skin is None else [skin, *rest]
 
 
-def _plain(surface: MovingSurface, frame: int) -> FrameSurface:
+def _unrefined(surface: MovingSurface, frame: int) -> FrameSurface:
     """Return an unrefined surface in a frame."""
     points = surface.at(frame)
     return FrameSurface(

@@ -102,7 +102,7 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
         (shaped,) = moving([_body_of(surface, part)], poses)
         displacements = surface.shapes.astype(np.float64)
         if part is None:
-            _take_pose_out(clip, displacements)
+            _remove_head_motion(clip, displacements)
         displacements -= surface.rest
         if part is None and poses:
             weights = nearest_weights(shaped.targets, displacements, weights)
@@ -173,14 +173,14 @@ def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
     shapes = surface.shapes.astype(np.float64)
     is_refined = isinstance(surface, RefinedSurface)  # normals include the head's turn
     if surface is clip.skin and not is_refined:
-        _take_pose_out(clip, shapes)
+        _remove_head_motion(clip, shapes)
     bent = np.array([surface.normals_of(shape, frame) for frame, shape in enumerate(shapes)])
     if is_refined:
-        _take_pose_out(clip, bent, are_positions=False)
+        _remove_head_motion(clip, bent, are_positions=False)
     return bent - surface.normals_of(surface.rest, None)
 
 
-def _take_pose_out(clip: Clip, shapes: Floats64, *, are_positions: bool = True) -> None:
+def _remove_head_motion(clip: Clip, shapes: Floats64, *, are_positions: bool = True) -> None:
     """Remove the head's motion from shapes or normals of the skin, (N, V, 3), in place.
 
     are_positions: whether shapes are vertices; normals only turn.

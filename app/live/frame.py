@@ -30,13 +30,13 @@ class LiveFrame:
     is_complete: bool = True
 
 
-def put_shape(channels: dict[str, float], name: str, value: float) -> None:
+def set_shape(channels: dict[str, float], name: str, value: float) -> None:
     """Set a shape; ignore a value far outside of 0 to 1, which trackers sometimes send."""
     if abs(value) <= NONSENSE:
         channels[name] = value
 
 
-def put_angle(channels: dict[str, float], name: str, degrees: float) -> None:
+def set_angle(channels: dict[str, float], name: str, degrees: float) -> None:
     """Set an angle, unless it is more than half a turn or NaN."""
     if abs(degrees) <= 180.0:
         channels[name] = degrees

@@ -116,8 +116,8 @@ class LiveFace(Receiver):
     def advance(self, seconds: float) -> None:
         """Process the frames that have arrived; `seconds` have passed since the last call."""
         self.has_news = False
-        for at, frame in self.take():
-            self._take_in(frame, at)
+        for at, frame in self.new_frames():
+            self._process(frame, at)
         if self.state is State.RECEIVING:
             self._share = min(self._share + seconds / EASING_IN, 1.0)
         else:
@@ -125,7 +125,7 @@ class LiveFace(Receiver):
         if self._neutral_until is not None and self._clock() >= self._neutral_until:
             self._end_calibration()
 
-    def _take_in(self, frame: LiveFrame, at: float) -> None:
+    def _process(self, frame: LiveFrame, at: float) -> None:
         self._pending.update(frame.channels)
         if not frame.is_complete:
             return

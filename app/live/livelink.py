@@ -20,7 +20,7 @@ from collections.abc import Mapping
 
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
-from .frame import LiveFrame, put_angle, put_shape, readable_subject
+from .frame import LiveFrame, readable_subject, set_angle, set_shape
 
 VERSION = 6
 COUNT = 61
@@ -52,10 +52,10 @@ def parse(packet: bytes) -> LiveFrame | None:
         return None
     channels: dict[str, float] = {}
     for shape, value in zip(ARKIT, values, strict=False):
-        put_shape(channels, shape, value)
+        set_shape(channels, shape, value)
     for angle, value in zip(ANGLES, values[len(ARKIT) :], strict=True):
         if angle is not None:
-            put_angle(channels, angle, -math.degrees(value) - OUTWARD.get(angle, 0.0))
+            set_angle(channels, angle, -math.degrees(value) - OUTWARD.get(angle, 0.0))
     return LiveFrame(channels, name)
 
 

@@ -61,7 +61,7 @@ class Receiver:
         """The port to listen on."""
         return int(self._socket.getsockname()[1])
 
-    def take(self) -> list[tuple[float, LiveFrame]]:
+    def new_frames(self) -> list[tuple[float, LiveFrame]]:
         """Return the frames since the last call, oldest first, and their times [s of the clock]."""
         self.has_frame = False
         return [self._waiting.popleft() for _ in range(len(self._waiting))]

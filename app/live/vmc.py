@@ -32,7 +32,7 @@ with contextlib.suppress(ImportError):  # see Protocol.check
 
 from risorius.geometry.transforms import angles_of
 
-from .frame import LiveFrame, put_angle, put_shape, shape_named
+from .frame import LiveFrame, set_angle, set_shape, shape_named
 
 _BUNDLE = b"#bundle\0"
 _HEAD = len(_BUNDLE) + 8  # the mark and a time, which is ignored
@@ -63,13 +63,13 @@ def parse(packet: bytes) -> LiveFrame | None:
                 has_values = True
                 name, value = parsed.params
                 if shape := shape_named(name):
-                    put_shape(channels, shape, value)
+                    set_shape(channels, shape, value)
             elif parsed.params[0] in read_bones:
                 name, _, _, _, x, y, z, w = parsed.params
                 bones[name] = (x, y, z, w)
     except (MessageError, ValueError, struct.error):  # a Unicode error is a ValueError
         return None
-    _put_bones(channels, bones)
+    _set_bones(channels, bones)
     if not (has_values or is_applied or bones):
         return None
     return LiveFrame(channels, is_complete=is_applied or not has_values)
@@ -90,16 +90,16 @@ def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
         at += size
 
 
-def _put_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> None:
+def _set_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> None:
     if "Head" in bones:
         chain = [bones[name] for name in ("Neck", "Head") if name in bones]
         for name, angle in zip(("yaw", "pitch", "roll"), _angles(*chain), strict=True):
-            put_angle(channels, f"head_{name}", angle)
+            set_angle(channels, f"head_{name}", angle)
     for side in ("Left", "Right"):
         if f"{side}Eye" in bones:
             yaw, pitch, _ = _angles(bones[f"{side}Eye"])
-            put_angle(channels, f"eye_yaw_{side.lower()}", yaw)
-            put_angle(channels, f"eye_pitch_{side.lower()}", pitch)
+            set_angle(channels, f"eye_yaw_{side.lower()}", yaw)
+            set_angle(channels, f"eye_pitch_{side.lower()}", pitch)
 
 
 def _angles(*turns: Quaternion) -> tuple[float, float, float]:

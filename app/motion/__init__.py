@@ -64,7 +64,7 @@ def play(
             opening = _opening_of_jaw(scene, values)
             living = idle.amounts(moved, viewer, time, opening=opening)
             values = scene.limits.pose(living, over=values)
-        scene.take(values)
+        scene.set_controls(values)
 
     scene.reset()
     pose(0.0)

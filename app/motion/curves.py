@@ -48,7 +48,7 @@ def solved(
     frames = np.stack([activations[name] for name in moved.lowest], axis=1)
     weights = np.stack([tables.weights[name] for name in names])
     highest = np.array([scene.limits[name][1] for name in names])
-    known = _known(names, tables, controls or {}, len(frames), highest)
+    known = _set_values(names, tables, controls or {}, len(frames), highest)
     rest = frames - _sums(known, weights, np.stack([tables.floors[name] for name in names]))
     found, where = np.unique(rest.round(9), axis=0, return_inverse=True)
     values = _fitted(weights, highest, found)[where.ravel()]
@@ -76,7 +76,7 @@ def _muscles_of(scene: Scene, layer: str) -> Controls:
     return scene.face.simulation.controls
 
 
-def _known(
+def _set_values(
     names: Sequence[str],
     tables: Layers,
     controls: Mapping[str, Floats64],

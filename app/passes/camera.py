@@ -24,7 +24,7 @@ class CameraLabels:
     translation: Floats64
 
     @classmethod
-    def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
+    def from_camera(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
         """Return the parameters of `camera` for a picture of `size` [pixels]."""
         width, height = size
         focal = camera.focal(width / height, height)

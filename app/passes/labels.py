@@ -51,14 +51,14 @@ def labels_of(
     flags of pixels where a mask hides landmarks, (H, W); None: no mask. `docs/passes.md` describes
     the keys. A scene without a face has labels for camera and controls alone.
     """
-    placed = CameraLabels.of(camera, size)
+    placed = CameraLabels.from_camera(camera, size)
     labels: dict[str, Any] = {
         "camera": {
             "width": size[0],
             "height": size[1],
-            "K": _plain(placed.intrinsics),
-            "R": _plain(placed.rotation),
-            "t": _plain(placed.translation),
+            "K": _as_lists(placed.intrinsics),
+            "R": _as_lists(placed.rotation),
+            "t": _as_lists(placed.translation),
         },
         "controls": {name: value for name, value in scene.values.items() if value},
     }
@@ -75,12 +75,15 @@ def labels_of(
     sums = face.simulation.controls.sums
     labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
     labels["head"] = {
-        "R": _plain(rotation),
-        "t": _plain(placed.to_camera(cranium[None, :3, 3])[0]),
+        "R": _as_lists(rotation),
+        "t": _as_lists(placed.to_camera(cranium[None, :3, 3])[0]),
         **{name: round(angle, DIGITS) for name, angle in angles},
     }
     labels["gaze"] = {
-        side: {"camera": _plain(placed.rotation @ direction), "head": _plain(to_head @ direction)}
+        side: {
+            "camera": _as_lists(placed.rotation @ direction),
+            "head": _as_lists(to_head @ direction),
+        }
         for side, direction in directions.items()
     }
     if depth is not None:
@@ -94,13 +97,13 @@ def labels_of(
 
 def _plain_landmarks(found: Landmarks) -> dict[str, Any]:
     return {
-        "points": _plain(found.points),
-        "pixels": _plain(found.pixels),
+        "points": _as_lists(found.points),
+        "pixels": _as_lists(found.pixels),
         "visible": found.visible.tolist(),
     }
 
 
-def _plain(numbers: Floats64) -> Any:
+def _as_lists(numbers: Floats64) -> Any:
     """Convert an array to lists of rounded numbers without negative zeros."""
     return (np.round(numbers, DIGITS) + 0.0).tolist()
 

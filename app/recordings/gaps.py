@@ -21,7 +21,7 @@ from .take import Take
 SHORT_GAP = 0.3  # [s]; a gap up to this is bridged by a straight line
 
 
-def whole_take(
+def take_from_rows(
     kind: str,
     source: str,
     times: Floats64,
@@ -49,7 +49,7 @@ def whole_take(
     moments, first = np.unique(times[known], return_index=True)
     kept = known[first]
     if len(kept) < len(times):
-        all_notes.append(_left_out(len(times) - len(kept)))
+        all_notes.append(_note_on_rows_left_out(len(times) - len(kept)))
     times = moments - moments[0]
     if times[-1] > longest_take:
         raise UserError(
@@ -76,7 +76,7 @@ def whole_take(
     )
 
 
-def _left_out(count: int) -> str:
+def _note_on_rows_left_out(count: int) -> str:
     """Return the report's sentence on rows without a time."""
     were = "was" if count == 1 else "were"
     return f"{counted(count, 'row')} without a time {were} left out."

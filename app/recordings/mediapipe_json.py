@@ -18,7 +18,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from .gaps import whole_take
+from .gaps import take_from_rows
 from .head_pose import head_of
 from .names import angle_of, shape_of
 from .table import LARGEST, without_percent
@@ -55,7 +55,7 @@ def read_weights(document: Any, source: str, request: TakeRequest) -> Take:
     Frames may have a time and other values beside the weights: `{"weights": [0.2], "time": 0.0}`.
     """
     request.refuse_face(source)
-    kind = "Audio2Face" if "facsnames" in _plain(document) else "JSON of weights"
+    kind = "Audio2Face" if "facsnames" in _with_plain_keys(document) else "JSON of weights"
     return _take_of(_named_rows(document), kind, document, source, request)
 
 
@@ -71,7 +71,7 @@ def _take_of(
     lost = rows_without_face(_keys(keyed), lambda name: _texts(keyed, name), len(frames))
     shapes = shares(without_rows(shapes, lost), notes)
     left_out = [key for key in _keys(keyed) if key not in used and _is_left_out(key)]
-    return whole_take(
+    return take_from_rows(
         kind,
         source,
         times,
@@ -109,8 +109,8 @@ def _named_rows(document: Any) -> list[Any]:
 
 def _tables(document: Any) -> list[dict[str, Any]]:
     """Return the document and the tables in it, such as a header, with plain keys."""
-    keys = _plain(document)
-    return [keys, *(_plain(item) for item in keys.values() if isinstance(item, dict))]
+    keys = _with_plain_keys(document)
+    return [keys, *(_with_plain_keys(item) for item in keys.values() if isinstance(item, dict))]
 
 
 def _are_names(item: Any) -> bool:
@@ -173,7 +173,7 @@ def _frames(document: Any) -> list[Any]:
         return [document] if document and all(map(_category, document)) else document
     if not isinstance(document, dict):
         return []
-    keys = _plain(document)
+    keys = _with_plain_keys(document)
     if isinstance(keys.get("frames"), list):
         return list(keys["frames"])
     if not _faces(document, depth=1):
@@ -191,7 +191,7 @@ def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
         found = {key: _number(item) for key, item in plain.items() if shape_of(key)}
         if found:
             return [found]
-        keys = _plain(frame)
+        keys = _with_plain_keys(frame)
         faces = _faces(_first(keys, FACES), depth)
         if faces or depth <= 1:
             return faces
@@ -209,7 +209,7 @@ def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
     """Return the keys and values of a frame without its faces, also from tables with faces."""
     if isinstance(frame, list):
         frame = frame[0] if len(frame) == 1 else {}
-    keys = _plain(frame)
+    keys = _with_plain_keys(frame)
     found: dict[str, Any] = {}
     for key, value in keys.items():
         if shape_of(key) or key in FACES or value in ("", None) or value == []:
@@ -230,7 +230,7 @@ def _is_left_out(key: str) -> bool:
 
 def _category(item: Any) -> tuple[str, float] | None:
     """Return name, as written, and score of a category; None for another item."""
-    keys = _plain(item)
+    keys = _with_plain_keys(item)
     name_keys = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
     name = _first(keys, name_keys)
     score_keys = ("score", "value", "weight")
@@ -301,7 +301,7 @@ def _rate(document: Any) -> float | None:
     return next((rate for rate in rates if 1.0 <= rate <= 1000.0), None)
 
 
-def _plain(item: Any) -> dict[str, Any]:
+def _with_plain_keys(item: Any) -> dict[str, Any]:
     """Return a table with keys without capitals and underscores; {} for any other item."""
     if not isinstance(item, dict):
         return {}

@@ -10,16 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from .angles import in_degrees
-from .gaps import whole_take
+from .gaps import take_from_rows
 from .names import NONSENSE, angle_of, shape_of, unit_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
 from .take import Take, TakeRequest
 from .timing import times_of
 from .values import (
+    from_percent,
     intensities,
     is_calibrated,
     is_flag,
-    of_percent,
     rows_without_face,
     shares,
     without_rows,
@@ -43,7 +43,7 @@ class Columns:
     repeated: list[int] = field(default_factory=list)
 
     @classmethod
-    def of(cls, names: tuple[str, ...]) -> Columns:
+    def from_names(cls, names: tuple[str, ...]) -> Columns:
         """Assign columns to channels by name; the first column of a channel is used."""
         found = cls()
         units = [unit_of(name) for name in names]
@@ -96,7 +96,7 @@ class Columns:
 
 def recognises(names: tuple[str, ...]) -> bool:
     """Whether any column has a known name."""
-    return Columns.of(names).are_known
+    return Columns.from_names(names).are_known
 
 
 def is_live_link(names: tuple[str, ...]) -> bool:
@@ -112,7 +112,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     """Return the take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
-    columns = Columns.of(table.names)
+    columns = Columns.from_names(table.names)
     notes += columns.notes_of(table.names)
     times, used = times_of(table, request.rate, notes)
     only_present = {n: c for n, c in columns.detections.items() if n not in columns.units}
@@ -128,7 +128,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: numbers[name] for name in only_present}
     visemes = {name: numbers[name] for name in columns.visemes}
-    channels |= of_percent(visemes, NONSENSE, "Visemes", notes)
+    channels |= from_percent(visemes, NONSENSE, "Visemes", notes)
     is_known = is_live_link(table.names)
     outward = OUTWARD if is_known else {}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
@@ -137,7 +137,7 @@ def read(table: Table, request: TakeRequest) -> Take:
             "Angles were assumed to grow downward and to the subject's right, as in ARKit."
         )
     unknown = [table.names[number] for number in columns.unknown]
-    return whole_take(
+    return take_from_rows(
         "Live Link Face" if is_known else "Table of named columns",
         table.source,
         times,

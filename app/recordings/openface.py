@@ -14,7 +14,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from .gaps import whole_take
+from .gaps import take_from_rows
 from .names import EYE_ANGLES
 from .table import Table, one_face
 from .take import Take, TakeRequest
@@ -72,7 +72,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     channels |= _eyes(numbers, channels, notes)
     channels = without_rows(channels, lost)
     version = 2 if "face_id" in places or "gaze_angle_x" in places else 1
-    return whole_take(
+    return take_from_rows(
         f"OpenFace {version}",
         table.source,
         times,

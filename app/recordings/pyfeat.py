@@ -18,7 +18,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from .gaps import whole_take
+from .gaps import take_from_rows
 from .names import shape_of
 from .table import Table, one_face
 from .take import Take, TakeRequest
@@ -68,7 +68,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     lost = rows_without_face(table.names, table.cells_of, len(table.lines))
     lost |= ~(numbers.get("facescore", np.ones(1)) > 0.0)
     channels = without_rows(channels, lost)
-    return whole_take(
+    return take_from_rows(
         "py-feat 2" if shapes else "py-feat 1",
         table.source,
         times,

@@ -57,13 +57,13 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     if rate is not None and not 1.0 <= rate <= 1000.0:
         raise UserError(f"rate {rate:g}: must be from 1 to 1000 frames a second")
     text, encoding = read_recording(path)
-    take = _take_in(text, path, TakeRequest(face, rate))
+    take = _read_text(text, path, TakeRequest(face, rate))
     if encoding == "UTF-8":
         return take
     return replace(take, notes=(f"The text was read as {encoding}.", *take.notes))
 
 
-def _take_in(text: str, path: Path, request: TakeRequest) -> Take:
+def _read_text(text: str, path: Path, request: TakeRequest) -> Take:
     """Read the take in a text; raise UserError as in `read_take`."""
     known_kinds = (
         "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "

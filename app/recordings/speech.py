@@ -22,7 +22,7 @@ from risorius.schema import OneOf, Record, Rest, Within, called
 from risorius.schema import read as read_table
 
 from ..errors import UserError
-from .gaps import whole_take
+from .gaps import take_from_rows
 from .names import viseme_of
 from .take import Take, TakeRequest
 
@@ -102,14 +102,14 @@ def read_tracks(document: Any, source: str, request: TakeRequest) -> Take:
         raise UserError(f"{source}: no channel of visemes has any keys")
     times = np.unique(np.concatenate([keys[:, 0] for keys in tracks.values()]))
     channels = {name: np.interp(times, keys[:, 0], keys[:, 1]) for name, keys in tracks.items()}
-    channels = _made_clear(channels, notes)
-    return whole_take(
+    channels = _raise_low_weights(channels, notes)
+    return take_from_rows(
         "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,
         is_calibrated=True, has_keys=True,
     )  # fmt: skip
 
 
-def _made_clear(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
+def _raise_low_weights(channels: dict[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """Raise low weights, so that lips meet at P and F, and the mouth rests in silence."""
     clear_peak = 0.8  # tracks with higher peaks are clear enough
     if max(float(values.max()) for values in channels.values()) > clear_peak:
@@ -170,7 +170,7 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
     used = {name: values for name, values in channels.items() if values.any()}
     notes = [f"Mouth shapes became visemes, {transition:g} s from one to the next."]
     sound = _sound_of(written.metadata, source, notes)
-    take = whole_take(
+    take = take_from_rows(
         "Rhubarb Lip Sync", source, times, used, notes=notes, is_calibrated=True, has_keys=True
     )
     return replace(take, sound=sound)

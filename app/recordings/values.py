@@ -81,7 +81,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
 
     If the face of a take is never at 0, rows of zeros are rows without a face, and become NaN.
     """
-    found = of_percent(shapes, NONSENSE, "Shapes", notes)
+    found = from_percent(shapes, NONSENSE, "Shapes", notes)
     far = 0
     beyond = 0
     for name, values in found.items():
@@ -109,7 +109,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
 def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats64]:
     """Return action units from 0 to 1; values of FACS, 0 to 5 (A to E), and percent are scaled."""
     highest_unit = 6.0  # a value of 0 to 5 cannot be larger
-    found = of_percent(units, highest_unit, "Action units", notes)
+    found = from_percent(units, highest_unit, "Action units", notes)
     found = {name: np.where(np.abs(v) > highest_unit, np.nan, v) for name, v in found.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in found.values()), default=0.0)
     most_overshoot = 1.05  # largest smoothed value on a scale of 0 to 1
@@ -137,7 +137,7 @@ def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
     return calibrated
 
 
-def of_percent(
+def from_percent(
     channels: Mapping[str, Floats64], most: float, kind: str, notes: list[str]
 ) -> dict[str, Floats64]:
     """Return the channels, divided by 100 if their values can only be percent.

@@ -190,11 +190,11 @@ class FileMeshWriter:
             material: dict[str, Any] = {"name": "skin", "pbrMetallicRoughness": rough}
             material["doubleSided"] = True
             if number >= 0:
-                self._look(self._painted.materials[number], material)
+                self._write_appearance(self._painted.materials[number], material)
             self._materials[number] = self._glb.add("materials", material)
         return self._materials[number]
 
-    def _look(self, source: Material, material: dict[str, Any]) -> None:
+    def _write_appearance(self, source: Material, material: dict[str, Any]) -> None:
         """Write colour, opacity and texture of a file's material into a glTF material."""
         rough = material["pbrMetallicRoughness"]
         material["name"] = source.name

@@ -20,7 +20,7 @@ import numpy as np
 from risorius.assets.fitting.lips import LipCut
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.gltf import StoredPiece
-from risorius.assets.gltf_content import COMPONENTS, content_of, plain_chunks
+from risorius.assets.gltf_content import COMPONENTS, content_of, decompressed_chunks
 from risorius.geometry.arrays import Floats32, Integers
 
 from .bodies import Shaped
@@ -34,7 +34,7 @@ def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
 
     folder: folder of other files that the document names. A missing file raises AssetError.
     """
-    text, data = plain_chunks(content, folder)
+    text, data = decompressed_chunks(content, folder)
     document: dict[str, Any] = json.loads(text.decode("utf-8-sig"))
     binary = data or b""
     buffers = document.get("buffers", [])

@@ -93,7 +93,7 @@ def find_pieces(
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         role = _role_of(points, centre, head, near)
         found.append(FilePiece(number, group, role, centre, names[group[0]]))
-    return _in_rows(found, rest)
+    return _correct_teeth(found, rest)
 
 
 def without_helpers(pieces: Sequence[FilePiece]) -> list[FilePiece]:
@@ -186,7 +186,7 @@ def _role_in_mouth(points: Floats64, centre: Floats64, head: FittedHead) -> str 
     return "upper_teeth" if centre[1] > between else "lower_teeth"
 
 
-def _in_rows(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
+def _correct_teeth(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:
     """Correct the roles of single teeth by the two rows that they form.
 
     The rows of a stranger's mouth rise toward the molars more than the built-in ones, so that lower

@@ -42,8 +42,8 @@ __all__ = [
     "build_scene",
     "called_head",
     "controls_of",
+    "fit_users_head",
     "head_in_words",
-    "own_head",
 ]
 
 LOG = logging.getLogger("risorius.heads")  # reports changes of a user's head
@@ -89,7 +89,7 @@ def build_face(head: FittedHead | None = None) -> FaceScene:
         raise UserError(f"this head cannot be simulated: {error}") from None
 
 
-def own_head(head: Path, landmarks: Path | None) -> FittedHead:
+def fit_users_head(head: Path, landmarks: Path | None) -> FittedHead:
     """Fit the user's own head. landmarks: None for a known topology."""
     fitted = fit_head(head, landmarks)
     for note in fitted.notes:

@@ -44,7 +44,7 @@ class FaceScene(Scene):
     ) -> None:
         """Simulate `head`, by default the built-in head. face: an existing face of this head."""
         self.head = assets.load("head") if head is None else head
-        face = face or Face.of(self.head)
+        face = face or Face.from_head(self.head)
         self.simulation = face.simulation
         faces = self.head.faces
         rest = face.rest_positions
@@ -77,9 +77,9 @@ class FaceScene(Scene):
         """Return a copy of the face at rest, which moves independently; copying is fast."""
         return FaceScene(self.head, self.face.clone())
 
-    def take(self, values: ControlValues) -> None:
-        super().take(values)
-        self.simulation.controls.take(values.numbers)
+    def set_controls(self, values: ControlValues) -> None:
+        super().set_controls(values)
+        self.simulation.controls.set_array(values.numbers)
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))

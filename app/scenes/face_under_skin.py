@@ -30,7 +30,7 @@ class Face:
     dense_skin: DenseSkin | None = None
 
     @classmethod
-    def of(cls, head: assets.Head | FittedHead) -> Face:
+    def from_head(cls, head: assets.Head | FittedHead) -> Face:
         """Make a face of this head at rest; raises ValueError if it cannot be simulated."""
         simplified = head.simplified if isinstance(head, FittedHead) else None
         simulation = sim.create(simplified or head)

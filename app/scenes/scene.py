@@ -28,9 +28,9 @@ class Scene(Drawable):
 
         Raises UserError for an unknown name.
         """
-        self.take(self.limits.pose(channels))
+        self.set_controls(self.limits.pose(channels))
 
-    def take(self, values: ControlValues) -> None:
+    def set_controls(self, values: ControlValues) -> None:
         """Set all controls."""
         self.values = values
 

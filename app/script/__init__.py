@@ -79,7 +79,7 @@ class Channel:
             object.__setattr__(self, name, own)
 
     @classmethod
-    def of(cls, keys: Iterable[Key]) -> Channel:
+    def from_keys(cls, keys: Iterable[Key]) -> Channel:
         """Make a channel of keys, which must be in the order of time."""
         keys = tuple(keys)
         return cls(
@@ -246,7 +246,7 @@ class Script:
         before, after, fraction = _between(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
-        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).of(
+        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).progress(
             fraction
         )
         return posed
@@ -254,7 +254,7 @@ class Script:
     def posed_channel(self, name: str) -> Channel:
         """Return the motion of a control by the poses, without tracks, as a channel."""
         keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
-        return Channel.of(keys)
+        return Channel.from_keys(keys)
 
     @property
     def key_poses(self) -> tuple[Pose, ...]:

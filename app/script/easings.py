@@ -41,7 +41,7 @@ class Easing(NamedTuple):
         """The word for the easing, or its slopes as "0.5,2"."""
         return _WORDS.get(self) or free_easing(*self.slopes)
 
-    def of(self, fraction: float) -> float:
+    def progress(self, fraction: float) -> float:
         """Return the fraction of the value's change at a fraction of the time; both are 0 to 1."""
         if self.is_held:
             return fraction // 1.0

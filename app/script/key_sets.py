@@ -29,7 +29,7 @@ class KeySet(Set[KeyId]):
         self.times = {name: each for name, each in times.items() if len(each)}
 
     @classmethod
-    def of(cls, *keys: KeyId) -> KeySet:
+    def from_keys(cls, *keys: KeyId) -> KeySet:
         """Make a set of a few keys."""
         times: dict[str, set[float]] = {}
         for track, time in keys:
@@ -38,7 +38,7 @@ class KeySet(Set[KeyId]):
 
     @classmethod
     def _from_iterable(cls, keys: Iterable[Any]) -> KeySet:  # type: ignore[override]
-        return cls.of(*keys)  # for the results of Set's operators
+        return cls.from_keys(*keys)  # for the results of Set's operators
 
     def __contains__(self, key: object) -> bool:
         return isinstance(key, KeyId) and key.time in self.times.get(key.track, NO_TIMES)
@@ -96,7 +96,7 @@ class KeySet(Set[KeyId]):
         return self._combined(other, np.setdiff1d)
 
     def _combined(self, other: Set[Any], combine: Callable[[Times, Times], Times]) -> KeySet:
-        other_times = (other if isinstance(other, KeySet) else KeySet.of(*other)).times
+        other_times = (other if isinstance(other, KeySet) else KeySet.from_keys(*other)).times
         return KeySet(
             {
                 name: combine(self.times.get(name, NO_TIMES), other_times.get(name, NO_TIMES))

@@ -180,7 +180,9 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
-def keyed_alone(script: Script, time: float, values: ControlValues, names: Iterable[str]) -> Script:
+def with_keys_of(
+    script: Script, time: float, values: ControlValues, names: Iterable[str]
+) -> Script:
     """Add keys for these controls and no others, so that the script has their values at `time` [s].
 
     If there is a pose at this time, it takes the controls that have no track. Other controls get a
@@ -221,7 +223,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
         after = present if len(present) else later
         easing = track.easing(after[0]).name if len(after) else "smooth"
         key = Key(key_time, rounded(value), easing)
-        changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.of([key])))
+        changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.from_keys([key])))
     return _with(script, changed)
 
 

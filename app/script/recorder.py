@@ -102,7 +102,7 @@ class Recorder:
             keys[:1] = _along(old, last, start)
         if tail and len(tail) < len(old):
             tail[:1] = _along(old, end, tail[0].time)
-        return Channel.of([*head, *keys, *tail])
+        return Channel.from_keys([*head, *keys, *tail])
 
 
 def _along(track: Channel, first: float, last: float) -> list[Key]:

@@ -55,7 +55,7 @@ def _channel(entries: Any) -> Channel:
         )
     keys = read(list[Key], entries, "key")
     _check_order("key", [key.time for key in keys])
-    return Channel.of(keys)
+    return Channel.from_keys(keys)
 
 
 def _channel_of_lines(text: str) -> Channel:

@@ -25,7 +25,7 @@ class Messages:
     stays: bool = False
     seconds_left: float = 0.0
 
-    def say(self, text: str, *, error: bool = False, stays: bool = False) -> None:
+    def show(self, text: str, *, error: bool = False, stays: bool = False) -> None:
         """Show a line in place of the last line; an error stays."""
         self.text = sentence(as_text(text))
         self.is_error = error
@@ -37,10 +37,10 @@ class Messages:
         try:
             line = task()
         except (UserError, OSError) as error:
-            self.say(str(error), error=True)
+            self.show(str(error), error=True)
             return
         if line:
-            self.say(line, stays=stays)
+            self.show(line, stays=stays)
 
     def carry_out(self, command: Task) -> None:
         """Remove the last message, then run a command of the user like `attempt`."""

@@ -23,7 +23,7 @@ from risorius.schema import (
     Within,
     parsed_json,
     quoted,
-    read_what_fits,
+    read_valid_entries,
 )
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
@@ -288,7 +288,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         return Settings(), f"{error}; the defaults are used"
     except ValueError as error:
         return Settings(), f"{path}: {error}; the defaults are used"
-    settings, refused = read_what_fits(Settings, stored)
+    settings, refused = read_valid_entries(Settings, stored)
     if not refused:
         return settings, ""
     most_reported = 4  # unusable values; a line has room for no more

@@ -36,7 +36,7 @@ from ..user_files import named
 from . import simplifying
 from .face_place import ORIENTING, is_face, placed
 from .fillings import filling_of
-from .jaw_place import jaw_axis_of, opening_as_people
+from .jaw_place import jaw_axis_of, with_human_opening
 from .landmark_file import (
     COUNT,
     MisfitError,
@@ -113,7 +113,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     path = Path(mesh)
     found = read_mesh(path)
     if landmarks is None:
-        return _fit_known(found, path)
+        return _fit_known_topology(found, path)
     file = Path(landmarks)
     indices, points = read_landmarks(file, found)
     try:
@@ -167,7 +167,7 @@ def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]
     return replace(fitted, lip_cut=cut, notes=(*fitted.notes, cut.in_words))
 
 
-def _fit_known(mesh: Mesh, path: Path) -> FittedHead:
+def _fit_known_topology(mesh: Mesh, path: Path) -> FittedHead:
     """Fit a mesh of a known topology; raises the errors of `fit_head`."""
     known = recognised(mesh)
     if known is None:
@@ -261,7 +261,7 @@ class _Jaw(NamedTuple):
 def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
     """Find the jaw of a skin [mm] with the landmarks `target`, (68, 3) [mm]."""
     axis = jaw_axis_of(skin.vertices, skin.faces, target)
-    return _Jaw(axis, known.rig if axis is None else opening_as_people(known.rig, axis, target))
+    return _Jaw(axis, known.rig if axis is None else with_human_opening(known.rig, axis, target))
 
 
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:

@@ -42,7 +42,7 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     return np.asarray(eyes + scale * np.array([[-out, up, forward], [out, up, forward]]))
 
 
-def opening_as_people(
+def with_human_opening(
     rig: Mapping[str, Any], axis: Floats64, landmarks: Floats64
 ) -> dict[str, Any]:
     """Scale angle and glide of a rig's jaw so that the mouth opens as far as people's mouths.

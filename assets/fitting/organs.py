@@ -61,7 +61,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         most_iris = 0.8  # greatest radius of an iris, in radii of the ball; some balls are small
         iris = min(iris, most_iris * radius)
         if own is None:
-            centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
+            centre[2] += _forward_clearance(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, iris))
     return tuple(eyes)
 
@@ -105,7 +105,7 @@ def _behind_lids(
     return found[:3], radius * float(np.exp(found[3]))
 
 
-def _way_forward(centre: Floats64, radius: float, skin: Floats64) -> float:
+def _forward_clearance(centre: Floats64, radius: float, skin: Floats64) -> float:
     """Return how far a sphere can move forward until it touches the skin (n, 3) [mm]."""
     away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)

@@ -15,11 +15,11 @@ from .mask import MASKS
 from .named import (
     NAMED,
     Colours,
+    colours_of_number,
     in_colours,
-    in_own_colours,
-    own_colours,
     person_called,
     person_in_words,
+    with_colours_of_number,
 )
 from .person import Person, make_person
 from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
@@ -47,16 +47,16 @@ __all__ = [
     "Sex",
     "built_in_hair",
     "coloured",
+    "colours_of_number",
     "drawn_irises",
     "features_of",
     "in_colours",
-    "in_own_colours",
     "make_person",
-    "own_colours",
     "person_called",
     "person_in_words",
     "recoloured",
     "sample_identity",
     "wearing",
+    "with_colours_of_number",
     "with_lids",
 ]

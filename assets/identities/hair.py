@@ -330,12 +330,14 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     """
     height, width = behind.shape
 
-    def far(uv: Points) -> Floats64:
+    def behind_hairline(uv: Points) -> Floats64:
         """Return distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
         at = [(1.0 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
-    used, number = np.unique(faces[(far(uv) > 0.0)[faces].any(axis=1)], return_inverse=True)
+    used, number = np.unique(
+        faces[(behind_hairline(uv) > 0.0)[faces].any(axis=1)], return_inverse=True
+    )
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
     points = vertices[used]
     uv = uv[used]
@@ -355,4 +357,4 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         points = np.vstack([points, middle[:, 0] + bulge])
         normals = np.vstack([normals, unit_vectors(normals[cut.edges].mean(axis=1))])
         uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])
-    return Scalp(points, normals, faces, far(uv), covers)
+    return Scalp(points, normals, faces, behind_hairline(uv), covers)

@@ -45,7 +45,7 @@ class Colours:
     features: Features
 
 
-def own_colours(
+def colours_of_number(
     identity: Identity,
     seed: int,
     *,
@@ -65,11 +65,11 @@ def own_colours(
     return Colours(angle, blood, irises or drawn, features_of(identity, angle, random))
 
 
-def in_own_colours(
+def with_colours_of_number(
     person: Person, seed: int, *, angle: float | None = None, irises: str | None = None
 ) -> Person:
-    """Give a person the skin, the eyes and the hair of a number (`own_colours`)."""
-    return in_colours(person, own_colours(person.identity, seed, angle=angle, irises=irises))
+    """Give a person the skin, the eyes and the hair of a number (`colours_of_number`)."""
+    return in_colours(person, colours_of_number(person.identity, seed, angle=angle, irises=irises))
 
 
 def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
@@ -98,10 +98,10 @@ def person_called(who: int | str) -> Person:
     Raises KeyError for other names.
     """
     if isinstance(who, int):
-        made = in_own_colours(make_person(sample_identity(who)), who)
+        made = with_colours_of_number(make_person(sample_identity(who)), who)
         return replace(made, called=str(who))
     known = NAMED[who]
     drawn = sample_identity(known.seed, sex=known.sex, age=known.age)
     made = make_person(replace(drawn, cut=known.cut))
-    made = in_own_colours(made, known.seed, angle=known.angle, irises=known.irises)
+    made = with_colours_of_number(made, known.seed, angle=known.angle, irises=known.irises)
     return replace(made, called=who)

@@ -73,11 +73,11 @@ def make_person(identity: Identity) -> Person:
     factors = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # factors on the weights, tried in this order
     for factor in factors[:-1]:
         with contextlib.suppress(AssetError):
-            return _made(identity if factor == 1.0 else identity.scaled(factor))
-    return _made(identity.scaled(factors[-1]))
+            return _make_head(identity if factor == 1.0 else identity.scaled(factor))
+    return _make_head(identity.scaled(factors[-1]))
 
 
-def _made(identity: Identity) -> Person:
+def _make_head(identity: Identity) -> Person:
     """Make the head of an identity; if its skin turns over or intersects, raises AssetError."""
     known = load("head")
     space = person_space()

@@ -68,7 +68,7 @@ def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
     return _Cloth(Tube(vertices, normals, shirt.faces), shade * colour)
 
 
-def _plain(shirt: Part, colour: Floats64) -> Floats64:
+def _unshaded_colour(shirt: Part, colour: Floats64) -> Floats64:
     """Return the unshaded colour of a person's shirt, sRGB, (3,)."""
     return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
 
@@ -103,7 +103,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
         rows.append(there + (outside + wave * (outside > 3.0)) * out)
     shades = np.array([0.3, 0.4, 0.6, 0.9, 1.0, 1.0, 0.99, 0.98, 0.97, 0.93, 0.75, 0.45])
     ribs = shades[:, None] * _ribs(len(columns))
-    roll = _rowed(np.stack(rows), ribs, _plain(shirt, colour), closed=True)
+    roll = _rowed(np.stack(rows), ribs, _unshaded_colour(shirt, colour), closed=True)
     return [_in_colour(shirt, colour), roll]
 
 
@@ -134,7 +134,7 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     rows = np.vstack([roots[1], roots[0] + 0.6 * lift, outer[:1]])
     seam = np.minimum(1.0 - down, 1.2 * np.minimum(along, 1.0 - along))
     shades = 1.03 - 0.12 * (np.abs(seam - 0.1) < 0.03)
-    plain = _plain(shirt, colour)
+    plain = _unshaded_colour(shirt, colour)
     leaf = _Cloth(sheet(outer, inner), np.tile(shades.ravel(), 2)[:, None] * plain)
     tucked = _rowed(rows, np.array([[0.35], [0.6], [0.95]]), plain)
     return [_in_colour(shirt, colour), tucked, leaf, *_buttoned(surface, plain)]
@@ -193,7 +193,7 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     below = np.array(SHIRTS["blue" if is_light else "white"])
     knitted = shades[:, None] * np.ones(len(columns))
     knitted[1:6] *= _ribs(len(columns))
-    jersey = _rowed(points, knitted, _plain(shirt, colour), closed=True)
+    jersey = _rowed(points, knitted, _unshaded_colour(shirt, colour), closed=True)
     return [_in_colour(shirt, below), jersey]
 
 

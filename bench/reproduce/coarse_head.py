@@ -53,7 +53,7 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
     """Error of each look relative to the static mesh, and the fraction of its changes that help."""
     rows = []
     sums = {name: np.zeros(5) for name in LOOKS}
-    for expression, cells in _drawn(size):
+    for expression, cells in _draw_cells(size):
         truth = cells[-1]
         static = cells[0]
         maps = []
@@ -90,7 +90,7 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
     return Outcome(values, image_table(rows))
 
 
-def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
+def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     """Draw every expression in every look; the last cell of an expression is the dense mesh."""
     head = assets.load("head")
     level = 2  # the finer head with 16 times the triangles

@@ -94,7 +94,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     papers_outline = list[float]()
     rows = []
     seen_change = 8.0  # levels of 255: a visible change
-    for expression, cells in _drawn(size):
+    for expression, cells in _draw_cells(size):
         named = {cell.title: cell for cell in cells}
         truth = cells[-1]
         static = named[STATIC.title]
@@ -124,7 +124,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     return Outcome(values, image_table(rows))
 
 
-def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
+def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     """Draw every expression in every variant; the last cell of an expression is the dense mesh."""
     scene = FaceScene()
     head = assets.load("head")

@@ -52,8 +52,8 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
                 levels = []
                 for phase, truth in zip(phases, true, strict=True):
                     image, count = plane.image(variant, style, phase)
-                    off = levels_apart(image, truth)
-                    outline = outline_apart(image, truth)
+                    off = grey_level_difference(image, truth)
+                    outline = outline_difference(image, truth)
                     text = f"{count} triangles: {off:.1f} levels, outline {outline:.1%} off"
                     cells.append((text, image))
                     levels.append(off)
@@ -104,7 +104,7 @@ class Waving:
         return self._scene
 
 
-def levels_apart(image: Image, truth: Image) -> float:
+def grey_level_difference(image: Image, truth: Image) -> float:
     """Root mean square difference in grey levels (0 .. 255), where both show the surface."""
     grey = _grey(image)
     true_grey = _grey(truth)
@@ -112,7 +112,7 @@ def levels_apart(image: Image, truth: Image) -> float:
     return float(np.sqrt(np.mean((grey - true_grey)[both] ** 2)))
 
 
-def outline_apart(image: Image, truth: Image) -> float:
+def outline_difference(image: Image, truth: Image) -> float:
     """Number of pixels that only one picture covers, relative to the true surface's pixels."""
     shows = _grey(image) < BACKGROUND
     true_shows = _grey(truth) < BACKGROUND

@@ -60,7 +60,7 @@ class Row:
     """Quartiles: half of the rounds lie between these."""
 
     @classmethod
-    def of(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
+    def from_seconds(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
         """Make a row. seconds: times of static and refined mesh in each round, (rounds, 2)."""
         ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
         low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
@@ -96,7 +96,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     quick_rounds = 10  # rounds without drawing, per round with drawing
     seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
     return [
-        Row.of(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
+        Row.from_seconds(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
         for stage in STAGES
     ]
 
@@ -109,7 +109,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     scene.reset()
     frames_per_second = 30.0
     for number in range(round(script.duration * frames_per_second) + 1):
-        scene.take(script.values(number / frames_per_second, scene.limits))
+        scene.set_controls(script.values(number / frames_per_second, scene.limits))
         scene.step(1.0 / frames_per_second)
         count = len(refiner.refine(scene.positions).triangles)
         if count > best:

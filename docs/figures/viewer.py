@@ -36,7 +36,7 @@ def wait_until_settled(viewer: Viewer) -> None:
 
 def face(viewer: Viewer) -> None:
     """The window as it opens, smiling."""
-    viewer.session.toggle_alone("joy")
+    viewer.session.toggle_solo("joy")
 
 
 def controls(viewer: Viewer) -> None:
@@ -49,7 +49,7 @@ def controls(viewer: Viewer) -> None:
 
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
-    viewer.session.toggle_alone("disgust")
+    viewer.session.toggle_solo("disgust")
     viewer.context.wanted_tab = "Mechanism"
     viewer.settings.theme = "dark"
     # Show the panel's refinement and colours of the mesh.

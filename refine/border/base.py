@@ -171,7 +171,7 @@ class BaseRefiner(Refiner):
         stream = self._own_stream if out is None else out
         if out is not None:
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
-        self.take(positions, view, values)
+        self.take_frame(positions, view, values)
         vertex_count, triangle_count = self.fill(stream, view)
         vertices, triangles, source = self._accepted
         shown, normals = self._geometry
@@ -188,7 +188,7 @@ class BaseRefiner(Refiner):
             attributes,
         )
 
-    def take(
+    def take_frame(
         self,
         positions: npt.NDArray[np.floating],
         view: View | None,
@@ -210,10 +210,10 @@ class BaseRefiner(Refiner):
         take_positions(positions, self._is_used, self.positions, self.points)
         if self._frame_values is None:
             refuse(values)
-        elif self._frame_values.take(values):
+        elif self._frame_values.update(values):
             self.follow_values()
 
-    def _own(self, *things: object) -> None:
+    def _claim(self, *things: object) -> None:
         """Raise ValueError if one of these objects already serves another refiner."""
         for thing in things:
             if _owners.get(id(thing), self) is not self:

@@ -28,7 +28,7 @@ class FrameValues:
         self._at_binding = bound.values.copy()
         self._are_given = False
 
-    def take(self, given: FrameValuesLike | None) -> bool:
+    def update(self, given: FrameValuesLike | None) -> bool:
         """Write the values of a frame into the table; return whether the table has changed.
 
         Attributes that are missing in a frame take their bound values. Raises ValueError for a name

@@ -99,13 +99,13 @@ class Embedding:
         is_proper = has_area(rest, triangles, SLIVER_SINE)
         members = None if groups is None else _checked_labels("groups", groups, len(fine))
         if places is not None:
-            found = _given_places(places, labels, members, is_proper, len(fine))
+            found = _checked_places(places, labels, members, is_proper, len(fine))
         else:
             bound, label_of = _groups(labels, face_labels, len(fine), is_proper)
             found = nearest_places(fine, directions, rest, triangles, bound)
             surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
             settle(fine, surface, across_edges(mesh, label_of), *found)
-            found = _of_first(members, *found)
+            found = _shared_by_groups(members, *found)
         self.triangles = read_only(found[0])
         self.weights = read_only(found[1])
         used, numbers = np.unique(self.triangles, return_inverse=True)
@@ -178,7 +178,7 @@ def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Float
     return vectors
 
 
-def _of_first(
+def _shared_by_groups(
     groups: Integers64 | None, triangles: Integers64, weights: Floats64
 ) -> tuple[Integers64, Floats64]:
     """Return the bound points of fine vertices; a group has the point of its first vertex."""
@@ -189,7 +189,7 @@ def _of_first(
     return triangles[root], weights[root]
 
 
-def _given_places(
+def _checked_places(
     places: tuple[npt.ArrayLike, npt.ArrayLike],
     labels: npt.ArrayLike | None,
     groups: Integers64 | None,

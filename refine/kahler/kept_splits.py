@@ -19,11 +19,11 @@ from ..mesh.lanes import (
     lanes_of,
     scaled,
     sum_of,
-    unit_of_held,
+    unit_if_representable,
     write_point,
 )
 from ..mesh.rings import NEAR_COUNT, Rings
-from ..mesh.vectors import ONE, ZERO, is_held, plus, row_of, unit, write_row
+from ..mesh.vectors import ONE, ZERO, is_representable, plus, row_of, unit, write_row
 from .frame import FrameBuffers
 
 
@@ -140,8 +140,8 @@ def place_kept_edge_points(
         edge_point = sum_of(scaled(of_ends, ends), scaled(of_wings, wings))
         total = sum_of(lanes_of(normals, a), lanes_of(normals, b))
         squared = total[0] * total[0] + total[1] * total[1] + total[2] * total[2]
-        write_point(rows, output_rows[i], edge_point, unit_of_held(total, squared))
-        left_count += not is_held(squared)
+        write_point(rows, output_rows[i], edge_point, unit_if_representable(total, squared))
+        left_count += not is_representable(squared)
     if left_count > 0:  # normals that look in opposite directions
         for k in range(first, last):
             i = np.uint32(k)

@@ -100,8 +100,8 @@ class Kahler(BaseRefiner):
             frame.counts,
         )
         self.edge_splits = frame.splits[: len(mesh.edges)]
-        self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
-        self._own(self.cutting)
+        self._claim(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
+        self._claim(self.cutting)
         self._criterion.set_scheme(self._scheme)
         self.find_normals()
         self._criterion.bind(self.connectivity, self.rest_positions, self.normals)

@@ -199,7 +199,7 @@ class Patterns(NamedTuple):
     subtriangles: Unsigned8
     """Points of the subtriangles, numbered as above, shape (K, most, 3); unused ones are 0."""
 
-    def of(self, row: int) -> Unsigned8:
+    def subtriangles_of(self, row: int) -> Unsigned8:
         """Subtriangles of one row, shape (M, 3)."""
         return self.subtriangles[row, : self.counts[row]]
 

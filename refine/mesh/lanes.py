@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.arrays import Floats32
 from ...jit import njit
-from .vectors import ONE, WIDTH, Number, is_held
+from .vectors import ONE, WIDTH, Number, is_representable
 
 LANE_COUNT = 4
 """Columns of a row. A kernel that asserts this width is faster, because the compiler knows the row
@@ -49,9 +49,9 @@ def scaled(factor: np.float32, v: Lanes) -> Lanes:
 
 
 @njit(lanes=True)
-def unit_of_held(v: Lanes, squared: np.float32) -> Lanes:
+def unit_if_representable(v: Lanes, squared: np.float32) -> Lanes:
     """Normalise a vector if single precision holds its square; other vectors stay."""
-    return scaled(ONE / np.sqrt(squared if is_held(squared) else ONE), v)
+    return scaled(ONE / np.sqrt(squared if is_representable(squared) else ONE), v)
 
 
 @njit(lanes=True)

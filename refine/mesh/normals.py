@@ -21,7 +21,7 @@ from .vectors import (
     between,
     cross,
     dot,
-    is_held,
+    is_representable,
     row_of,
     times,
     unit,
@@ -47,13 +47,13 @@ def normalise(vectors: Floats32) -> None:
     for v in range(vectors.shape[0]):
         vector = row_of(vectors, v)
         squared = dot(vector, vector)
-        scale = ONE / np.sqrt(squared if is_held(squared) else ONE)
+        scale = ONE / np.sqrt(squared if is_representable(squared) else ONE)
         write_row(vectors, v, times(scale, vector))
-        left_count += not is_held(squared)
+        left_count += not is_representable(squared)
     if left_count > 0:
         for v in range(vectors.shape[0]):
             vector = row_of(vectors, v)
-            if not is_held(dot(vector, vector)):
+            if not is_representable(dot(vector, vector)):
                 write_row(vectors, v, unit(vector))
 
 

@@ -69,19 +69,19 @@ def mix(start: Vector, end: Vector, fraction: Any) -> Vector:
 def unit(v: Vector) -> Vector:
     """Normalise a vector; zero stays zero."""
     squared = dot(v, v)
-    if is_held(squared):
+    if is_representable(squared):
         return times(ONE / np.sqrt(squared), v)
-    return unit_of_extreme(np.float64(v[0]), np.float64(v[1]), np.float64(v[2]))
+    return unit_in_double(np.float64(v[0]), np.float64(v[1]), np.float64(v[2]))
 
 
 @njit
-def is_held(squared: Any) -> Any:
+def is_representable(squared: Any) -> Any:
     """Return whether single precision can represent the square of a length, without a branch."""
     return (SHORT_SQUARE < squared) & (squared < LONG_SQUARE)
 
 
 @njit
-def unit_of_extreme(x: float, y: float, z: float) -> Vector:
+def unit_in_double(x: float, y: float, z: float) -> Vector:
     """Normalise a vector whose square single precision cannot hold; zero stays zero."""
     length = np.sqrt(x * x + y * y + z * z)
     if length == 0.0:

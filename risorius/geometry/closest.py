@@ -56,7 +56,7 @@ class MeshSearch:
     _boxes: Floats64
 
     @classmethod
-    def of(cls, vertices: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]) -> Self:
+    def from_mesh(cls, vertices: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]) -> Self:
         """Sort and box triangles (F, 3) of vertices (V, 3)."""
         corners = np.asarray(vertices, dtype=np.float64)[faces]
         order = np.argsort(codes_on_curve(corners.mean(axis=1)), kind="stable")
@@ -97,7 +97,7 @@ def closest_points(
     direction. For a triangle that faces the other way, `wrong_side` is added to the distance, so
     that points of the lower lip find the lower lip even if it touches the upper lip.
     """
-    return MeshSearch.of(vertices, faces).closest(points, normals, wrong_side)
+    return MeshSearch.from_mesh(vertices, faces).closest(points, normals, wrong_side)
 
 
 def codes_on_curve(positions: Floats64) -> Integers64:

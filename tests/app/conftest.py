@@ -81,7 +81,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     viewer.session.work.open(load_script(path))
     viewer.face.selection.keys = NO_KEYS
     viewer.settings.shows_curves = False
-    viewer.face.time_axis.show_whole()
+    viewer.face.time_axis.show_whole_script()
     settle(viewer)
     return path
 

@@ -100,7 +100,7 @@ def test_surfaces_are_sound(studio, pose):
 def test_muscles_swell_and_redden_as_they_contract():
     """In a smile the zygomaticus is thicker in the middle, and redder, equally on both sides."""
     scene = posed(FaceScene())
-    muscles = Muscles.of(scene.face)
+    muscles = Muscles.from_face(scene.face)
     names = [name for name, _ in muscles.names]
 
     def belly(name):
@@ -119,7 +119,7 @@ def test_muscles_swell_and_redden_as_they_contract():
     assert left[0] > 1.15 * at_rest[0]
     assert left[1] > 1.5 * at_rest[1]
     assert right == approx(left, rel=0.02)
-    late = Muscles.of(scene.face)  # made during a smile, muscles are the same
+    late = Muscles.from_face(scene.face)  # made during a smile, muscles are the same
     assert np.abs(late.vertices - muscles.vertices).max() < 0.05
     muscles.follow(posed(scene).face)
     assert belly("zygomaticus_major_left") == approx(at_rest, rel=0.01)
@@ -256,7 +256,7 @@ def test_bands_move_with_the_skin_and_leave_the_mouth_open(pose):
     They once jumped by up to 34 mm in a frame, and crossed the open mouth.
     """
     scene = posed(FaceScene())
-    muscles = Muscles.of(scene.face)
+    muscles = Muscles.from_face(scene.face)
     scene.pose(pose)
     before = muscles.vertices, scene.positions.copy()
     for _ in range(40):
@@ -279,7 +279,7 @@ def test_muscles_of_the_nose_lie_below_its_skin(pose):
     """No part of a muscle across the nose is outside its skin; one lay up to 1.4 mm outside."""
     scene = posed(FaceScene(), **pose)
     face = scene.face
-    muscles = Muscles.of(face)
+    muscles = Muscles.from_face(face)
     bands = [number for number, (name, _) in enumerate(muscles.names) if "nasalis" in name]
     assert len(bands) >= 4
     points = muscles.vertices.reshape(-1, ROWS * AROUND, 3)[bands].reshape(-1, 3)

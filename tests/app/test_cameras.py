@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from risorius.app.capture.drawing import DEFAULT_VIEW, camera_for, whole_scene
+from risorius.app.capture.drawing import DEFAULT_VIEW, camera_for, camera_for_whole_scene
 from risorius.app.errors import UserError
 
 from .command_line import refusal, risorius
@@ -26,8 +26,8 @@ def test_numbers_stand_around_the_middle_of_the_face(scene):
 
 def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
     """A camera too near to show the whole scene moves back; one farther away stays."""
-    near = whole_scene(scene, "0,0,4")
-    far = whole_scene(scene, "0,0,0.2")
+    near = camera_for_whole_scene(scene, "0,0,4")
+    far = camera_for_whole_scene(scene, "0,0,0.2")
     for camera in (near, far, camera_for(scene, "150,5,1")):
         clip = camera.projection_matrix(1.0) * camera.view_matrix()
         ends = np.column_stack([scene.rest_positions, np.ones(len(scene.rest_positions))])

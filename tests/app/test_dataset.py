@@ -190,7 +190,7 @@ def test_jobs_and_scheduler_exclude_each_other(tmp_path):
 
 def test_two_cannot_make_one_set(made):
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
-    with SetFolder(made).held(request.options(), resume=True):
+    with SetFolder(made).opened(request.options(), resume=True):
         message = refusal(run(made, "--resume"))
     assert "another process is making this set" in message
 

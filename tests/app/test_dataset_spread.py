@@ -22,10 +22,10 @@ from risorius.app.dataset.making import make_set
 from risorius.app.dataset.packing import Packing
 from risorius.app.dataset.request import SetRequest, request_of
 from risorius.app.dataset.sampling import draw
-from risorius.app.dataset.sharing import SampleBatch, made_on_cluster, make_samples
+from risorius.app.dataset.sharing import SampleBatch, make_on_cluster, make_samples
 from risorius.app.dataset.table import load_table
 from risorius.app.errors import UserError
-from risorius.assets.identities import EVERYBODY, own_colours, person_called, sample_identity
+from risorius.assets.identities import EVERYBODY, colours_of_number, person_called, sample_identity
 from risorius.faces import UNITS, Faces
 
 from .test_dataset import content
@@ -211,8 +211,8 @@ def test_seeds_have_different_persons():
     number = min(persons[1])
     identity = sample_identity(number, population=table.population)
     assert identity == sample_identity(number)
-    colours = own_colours(identity, number, population=table.population)
-    assert colours == own_colours(identity, number)
+    colours = colours_of_number(identity, number, population=table.population)
+    assert colours == colours_of_number(identity, number)
     assert person_called(number).identity == identity
 
 
@@ -233,7 +233,7 @@ def test_the_table_chooses_persons(tmp_path, text, is_so):
     population = load_table(file).population
     for number in range(6):
         identity = sample_identity(number, population=population)
-        assert is_so(identity, own_colours(identity, number, population=population))
+        assert is_so(identity, colours_of_number(identity, number, population=population))
 
 
 @pytest.mark.slow
@@ -242,7 +242,7 @@ def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
     folder = SetFolder(tmp_path / "set")
     (folder.path / UNFINISHED).mkdir(parents=True)
     share = SampleBatch(request_for(tmp_path / "nowhere"), (0, 1))
-    for sample in made_on_cluster(folder, [share], cluster.scheduler_address):
+    for sample in make_on_cluster(folder, [share], cluster.scheduler_address):
         folder.take_sample(sample.number, sample.files)
     for number in (0, 1):
         for file in folder.files_of(number):

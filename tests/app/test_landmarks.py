@@ -35,7 +35,7 @@ class Portrait:
         studio.draw_image()
         passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
         drawn = passes.draw(studio.camera, studio.options.style, ["segmentation", "depth"])
-        camera = CameraLabels.of(studio.camera, SIZE)
+        camera = CameraLabels.from_camera(studio.camera, SIZE)
         self.classes = drawn["segmentation"]
         self.found = landmarks_in(scene.face, camera, drawn["depth"])
         self.labels = labels_of(scene, studio.camera, SIZE, drawn["depth"])

@@ -214,7 +214,10 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
     """A film with life repeats exactly, and leaves all controls named by the script alone."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
     script = Script(
-        "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}
+        "smile",
+        3.0,
+        "here",
+        tracks={"AU12": Channel.from_keys(keys), "AU1": Channel.from_keys(keys)},
     )
     options = CaptureOptions(size=(64, 64), samples=0, is_alive=True)
     films = []

@@ -56,7 +56,9 @@ class Sitter:
         camera.fit(scene.positions, 0.02)
         self.pipeline.draw(camera, render.Style(), [Viewport(self.drawn, (0, 0, *SIZE))])
         classes = self.passes.draw(camera, render.Style(), {"segmentation"})["segmentation"]
-        places = CameraLabels.of(camera, SIZE).project(scene.positions[scene.landmarks[48:60]])
+        places = CameraLabels.from_camera(camera, SIZE).project(
+            scene.positions[scene.landmarks[48:60]]
+        )
         outline = places[ConvexHull(places).vertices]
         lips = PIL.Image.new("1", SIZE)
         PIL.ImageDraw.Draw(lips).polygon([tuple(place) for place in outline.tolist()], fill=1)

@@ -125,7 +125,7 @@ def test_a_faded_neck_makes_no_hole_in_a_mouth(thick_necked, renderer):
         camera.orbit(yaw, 0.0)
         camera.fit(thick_necked.positions, 0.02)
         picture = Sitter(thick_necked, renderer, "none").picture(camera)
-        places = CameraLabels.of(camera, SIZE).project(
+        places = CameraLabels.from_camera(camera, SIZE).project(
             thick_necked.positions[thick_necked.landmarks[60:68]]
         )
         lips = PIL.Image.new("1", SIZE)

@@ -60,7 +60,7 @@ def seen_from(studio, yaw=0.0, pitch=0.0):
     studio.camera = render.OrbitCamera.framing(studio.scene.framing.extent)
     studio.camera.orbit(yaw, pitch)
     studio.draw_image()
-    return CameraLabels.of(studio.camera, SIZE)
+    return CameraLabels.from_camera(studio.camera, SIZE)
 
 
 def first_hits(points, faces, eye, ways):

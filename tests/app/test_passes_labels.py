@@ -31,7 +31,7 @@ def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
     """K, R and t agree with the shaders' matrices; pixels count from the upper left corner."""
     camera, (width, height) = camera_at(yaw, pitch), size
     points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
-    labels = CameraLabels.of(camera, size)
+    labels = CameraLabels.from_camera(camera, size)
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(width / height))
     clip = np.column_stack([points, np.ones(20)]) @ matrix
     x, y = (clip[:, :2] / clip[:, 3:]).T
@@ -52,7 +52,7 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
     pose = labels_of(scene, camera, size)["head"]
     points = scene.rest_positions
     rotation = np.array(pose["R"])
-    seen = CameraLabels.of(camera, size).to_camera(points)
+    seen = CameraLabels.from_camera(camera, size).to_camera(points)
     assert np.allclose(points @ rotation.T + pose["t"], seen, atol=1e-5)
     towards_camera = camera_at(yaw, pitch).axes()[2]  # in the head's axes
     assert math.copysign(1.0, pose["yaw"]) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6

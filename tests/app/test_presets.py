@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.app.capture.drawing import whole_scene
+from risorius.app.capture.drawing import camera_for_whole_scene
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for
@@ -46,7 +46,7 @@ def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refin
     refinement = Refinement(look, refiner)
     pipeline = Pipeline(scene, render.Renderer(surface))
     drawn = pipeline.bind(refinement)
-    camera = whole_scene(scene, "front")
+    camera = camera_for_whole_scene(scene, "front")
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
     assert np.ptp(surface.read()) > 30
     bound = refiner_for(scene, refinement)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from risorius.app.errors import UserError
-from risorius.app.recordings.gaps import whole_take
+from risorius.app.recordings.gaps import take_from_rows
 
 odd = st.sampled_from([math.nan, 0.0, 0.25, 1.0])
 moments = st.one_of(st.integers(-3, 40).map(lambda number: number / 8.0), st.just(math.nan))
@@ -20,7 +20,7 @@ def test_any_rows(rows):
     times, jaw, smile = np.array(rows).T
     channels = {"jawOpen": jaw, "mouthSmileLeft": smile}
     try:
-        take = whole_take("any", "take.csv", times, channels)
+        take = take_from_rows("any", "take.csv", times, channels)
     except UserError as error:
         assert "face" in str(error) or "time" in str(error)
         assert not np.isfinite(rows).all()
@@ -41,7 +41,7 @@ def test_rows_are_put_in_the_order_of_their_times():
     A row whose time is years away is left out.
     """
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
-    take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
+    take = take_from_rows("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
     assert take.times == approx([0.0, 0.1, 0.2, 0.3])
     assert take.channels["jawOpen"] == approx([0.1, 0.2, 0.0, 0.5])
     assert "3 rows without a time " in take.notes[0]
@@ -53,13 +53,13 @@ def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
     The gap is 0.5 s at 10 frames per second, and values are exact.
     """
     values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
-    take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
+    take = take_from_rows("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
     expected = [0.2, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0, 1.0]
     assert take.channels["jawOpen"] == approx(expected)
 
 
 def test_a_slow_recording_has_no_holes():
     """At two frames per second, times are far apart, but no face is missing."""
-    take = whole_take("any", "x", np.arange(8) / 2.0, {"jawOpen": np.arange(8) / 8.0})
+    take = take_from_rows("any", "x", np.arange(8) / 2.0, {"jawOpen": np.arange(8) / 8.0})
     assert len(take.times) == 8
     assert not take.notes

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.live.frame import put_shape
+from risorius.app.live.frame import set_shape
 from risorius.app.playback import Playback
 from risorius.app.recordings.calibration import Calibration
 from risorius.app.recordings.conversion import script_of
@@ -38,16 +38,16 @@ def test_a_value_beyond_its_limits_is_cut_off_from_each_door(scene, value, gain)
     gains = Playback(neutral="none", gains=(f"all={gain}",))
     recorded, _ = script_of(take_of(seconds=0.0, jawOpen=value), gains, limits)
     recorded.check(limits)
-    put_shape(frame, "jawOpen", value)
+    set_shape(frame, "jawOpen", value)
     override = LiveOverride(limits)
-    override.take(controls_of(Calibration(default_gain=gain).apply(frame)) | {"none": 1.0}, 1.0)
+    override.override(controls_of(Calibration(default_gain=gain).apply(frame)) | {"none": 1.0}, 1.0)
     for asked, name, values in (
         (0.5 + value, "jaw_open", tracked.values(0.0, limits)),
         (value, "jaw_open", session.current),
         (gain * value, "jawOpen", recorded.values(0.0, limits)),
         (gain * value, "jawOpen", override.over(rest)),
     ):
-        scene.take(values)
+        scene.set_controls(values)
         assert scene.values[name] == pytest.approx(min(max(asked, 0.0), 1.0), abs=2e-3)
 
 

@@ -67,7 +67,7 @@ def channels(draw):
     easings = draw(
         st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*easing_names()]), **size)
     )
-    return Channel.of(map(Key, times, values, easings))
+    return Channel.from_keys(map(Key, times, values, easings))
 
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
@@ -84,7 +84,7 @@ def test_a_written_script_reads_back(tracks):
 def test_a_channel_has_the_values_of_its_keys(channel, data):
     """At a key the channel has the key's value, and between two keys it follows their easing."""
     keys = channel.keys
-    assert channel == Channel.of(keys)
+    assert channel == Channel.from_keys(keys)
     assert len(channel) == len(keys)
     assert [channel.value(key.time) for key in keys] == [key.value for key in keys]
     time = data.draw(st.floats(0.0, LARGEST))
@@ -92,7 +92,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
     after = [key for key in keys if key.time > time][:1] or before
     share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
     easing = easing_named(after[0].easing)
-    way = (after[0].value - before[0].value) * easing.of(min(max(share, 0.0), 1.0))
+    way = (after[0].value - before[0].value) * easing.progress(min(max(share, 0.0), 1.0))
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
 
 
@@ -119,7 +119,7 @@ def test_easings_are_hermite_curves(fraction, name):
     easing = easing_named(name)
     assert easing_named(easing.name) == easing
     curve = scipy.interpolate.CubicHermiteSpline([0.0, 1.0], [0.0, 1.0], easing.slopes)
-    assert easing.of(fraction) == approx(float(curve(fraction)), abs=1e-12)
+    assert easing.progress(fraction) == approx(float(curve(fraction)), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_easings_are_hermite_curves(fraction, name):
 def test_words_for_easings_keep_their_formulas(name, formula):
     """Named easings follow the formulas of the page on scripts, at one time and at many."""
     fractions = np.linspace(0.0, 1.0, 41)
-    found = [EASINGS[name].of(each) for each in fractions.tolist()]
+    found = [EASINGS[name].progress(each) for each in fractions.tolist()]
     assert found == approx(formula(fractions), abs=1e-12)
     channel = Channel([0.0, 1.0], [0.0, 1.0], name)
     assert channel.values_at(fractions) == approx(formula(fractions), abs=1e-12)
@@ -145,7 +145,7 @@ def test_words_for_easings_keep_their_formulas(name, formula):
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from([*easing_names()]))
 def test_easings_stay_between_the_keys(fraction, name):
     """Every easing goes from 0 to 1, and stays within this range."""
-    ease = easing_named(name).of
+    ease = easing_named(name).progress
     assert ease(0.0) == 0.0
     assert ease(1.0) == 1.0
     assert -1e-12 <= ease(fraction) <= 1.0 + 1e-12

@@ -26,7 +26,7 @@ def keys():
 def scripts(draw):
     """Scripts of poses and two tracks."""
     poses = tuple(Pose(key.time, {"joy": key.value}, key.easing) for key in draw(keys()))
-    tracks = {name: Channel.of(draw(keys())) for name in ("joy", "blink")}
+    tracks = {name: Channel.from_keys(draw(keys())) for name in ("joy", "blink")}
     return Script("t", 5.0, "t", poses=poses, tracks=tracks)
 
 
@@ -34,7 +34,7 @@ def scripts(draw):
 def test_keys_between_times_and_nearest(keys, ends, reach):
     """Keys between two times, and the key nearest to a time, are found as by a loop."""
     first, last = ends
-    chosen = KeySet.of(*keys)
+    chosen = KeySet.from_keys(*keys)
     assert chosen.between(first, last) == {each for each in keys if first <= each.time <= last}
     near = chosen.nearest(first, reach)
     least = min((abs(each.time - first) for each in keys), default=np.inf)
@@ -54,7 +54,7 @@ def test_keys_arrive_as_one_by_one(script, keys, steps, are_copies):
     arrived = {KeyId(track, time + shift): before[track, time] for track, time in keys}
     stays = {key_id: key for key_id, key in before.items() if are_copies or key_id not in keys}
     source = script if are_copies else None
-    changed, now = keyframes.moved(script, KeySet.of(*keys), steps / 8.0, source)
+    changed, now = keyframes.moved(script, KeySet.from_keys(*keys), steps / 8.0, source)
     assert now == set(arrived)
     assert changed.duration == max([script.duration, *(time for _, time in arrived)])
     assert dict(keys_by_id(changed)) == stays | arrived
@@ -65,7 +65,7 @@ def test_keys_arrive_as_one_by_one(script, keys, steps, are_copies):
 @given(script=scripts(), keys=KEYS, easing=EASING)
 def test_keys_go_and_are_eased_as_one_by_one(script, keys, easing):
     """Only chosen keys are deleted or eased; tracks without them are shared by both scripts."""
-    chosen = KeySet.of(*keys)
+    chosen = KeySet.from_keys(*keys)
     before = dict(keys_by_id(script))
     eased = keyframes.eased(script, chosen, easing)
     assert dict(keys_by_id(eased)) == {

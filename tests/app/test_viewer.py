@@ -107,7 +107,7 @@ def test_linked_sides_move_together(viewer):
 def test_keys_show_expressions_and_refinement(viewer):
     """1 shows the first expression, 1 again the neutral face; R switches refinement."""
     press_keys(viewer, "1")
-    assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
+    assert viewer.session.is_solo(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.context.stage.refined.triangle_count > 2100)
     press_keys(viewer, "r")
@@ -120,7 +120,7 @@ def test_keys_show_expressions_and_refinement(viewer):
 
 def test_keys_change_the_picture(viewer):
     """W, C, T, D and F2 (for the theme) change the picture, and change it back."""
-    viewer.session.toggle_alone("disgust")
+    viewer.session.toggle_solo("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.schedule.is_idle)
     before = viewer.surface.read()
@@ -201,7 +201,7 @@ def test_a_hovered_expression_lights_its_muscles(viewer):
 
 def test_a_look_is_chosen(viewer):
     """A look is chosen in the panel, by menu and by key; it resets options of the last look."""
-    viewer.session.toggle_alone("disgust")
+    viewer.session.toggle_solo("disgust")
     click(viewer, "tab Mechanism")
     display = viewer.settings.display
     stage = viewer.context.stage

@@ -214,7 +214,7 @@ def times(session):
 def test_delete_and_paste(session):
     """Selected keys are pasted at the playhead and deleted; both can be undone."""
     selection = KeySelection(session)
-    selection.keys = KeySet.of(KeyId(POSES, 1.0))
+    selection.keys = KeySet.from_keys(KeyId(POSES, 1.0))
     session.seek(2.0)
     selection.copy()
     selection.paste()
@@ -256,11 +256,11 @@ def test_live_sets_the_controls_it_names_and_sliders_the_others(session):
     """
     session.set("jawOpen", 0.2)
     session.set("AU9", 0.3)
-    session.live_override.take({"jawOpen": 0.8}, 1.0)
+    session.live_override.override({"jawOpen": 0.8}, 1.0)
     assert session.current["jawOpen"] == approx(0.8)
     assert session.current["AU9"] == 0.3
     assert session.values["jawOpen"] == 0.2
-    session.live_override.take({"jawOpen": 0.8}, 0.0)
+    session.live_override.override({"jawOpen": 0.8}, 0.0)
     assert session.current["jawOpen"] == 0.2
     session.undo()
     assert session.values["jawOpen"] == 0.0

@@ -156,7 +156,7 @@ def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeyp
     job = viewer.exporter.job
     assert until(viewer, lambda: job.task.share > 0.0, LONG)
     press_keys(viewer, "1")
-    assert viewer.session.is_alone("joy")
+    assert viewer.session.is_solo("joy")
     press_keys(viewer, "ctrl+q")
     assert "mp4 is being written" in viewer.messages.text
     assert not viewer.surface.should_close
@@ -164,7 +164,7 @@ def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeyp
     process.send_signal(signal.SIGSTOP)  # it needs time to end
     click(viewer, "export: stop")
     press_keys(viewer, "2")
-    assert viewer.session.is_alone("sadness")
+    assert viewer.session.is_solo("sadness")
     assert viewer.exporter.job is job
     process.send_signal(signal.SIGCONT)
     assert until(viewer, lambda: viewer.exporter.job is None)

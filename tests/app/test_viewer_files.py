@@ -298,7 +298,7 @@ def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
 def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
     """Silence is drawn as a line, noise as a band; a press in it goes to that time."""
     put(viewer, sound)
-    viewer.face.time_axis.show_whole()
+    viewer.face.time_axis.show_whole_script()
     viewer.messages.text = ""
     xdotool(viewer, "mousemove", 2, 2)
     assert until(viewer, lambda: viewer.schedule.is_idle)

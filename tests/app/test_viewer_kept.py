@@ -340,7 +340,7 @@ def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
     Broken pictures are ignored.
     """
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(portraits, "give_way", lambda _: None)
+    monkeypatch.setattr(portraits, "lower_priority", lambda _: None)
     stale = tmp_path / "risorius" / "portraits-0" / "coarse.png"
     stale.parent.mkdir(parents=True)
     stale.touch()

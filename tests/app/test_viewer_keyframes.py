@@ -69,7 +69,7 @@ def test_a_key_in_a_recording(scene):
 def test_one_control_is_keyed_over_poses(hello, scene):
     """A new track is 0 at the poses around its key; other controls and poses are unchanged."""
     wanted = scene.limits.pose({"jaw_open": 0.4})
-    script = keyframes.keyed_alone(hello, 2.0, wanted, ["jaw_open"])
+    script = keyframes.with_keys_of(hello, 2.0, wanted, ["jaw_open"])
     assert script.poses == hello.poses
     assert script.at(2.0)["jaw_open"] == approx(0.4)
     assert script.tracks["blink"] == hello.tracks["blink"]
@@ -86,7 +86,7 @@ def test_one_control_is_keyed_over_poses(hello, scene):
 def test_a_key_at_a_pose_changes_that_pose(hello, scene):
     """At a pose, a control without a track is set in the pose, one with a track gets a key."""
     wanted = scene.limits.pose({"joy": 0.5, "blink": 0.75})
-    script = keyframes.keyed_alone(hello, 1.0, wanted, ["joy", "blink"])
+    script = keyframes.with_keys_of(hello, 1.0, wanted, ["joy", "blink"])
     assert [pose.time for pose in script.poses] == [pose.time for pose in hello.poses]
     assert script.poses[1].name == "joy" and script.at(1.0)["joy"] == 0.5
     assert script.at(1.0)["blink"] == approx(0.75)
@@ -136,10 +136,10 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     """If a key moves away from the playhead, the face follows; a pose set by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
-    session.edit(keyframes.moved(session.script, KeySet.of(JOY), 0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.from_keys(JOY), 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
-    session.edit(keyframes.moved(session.script, KeySet.of(KeyId(POSES, 1.5)), -0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.from_keys(KeyId(POSES, 1.5)), -0.5)[0])
     assert session.values["joy"] == 0.3
 
 
@@ -216,7 +216,9 @@ def test_raised_keys_stay_within_limits(amount, choice):
     hello = load_script(HELLO)
     limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))
     everything = sorted(keyframes.all_keys(hello))
-    places = KeySet.of(*(place for place, is_in in zip(everything, choice, strict=True) if is_in))
+    places = KeySet.from_keys(
+        *(place for place, is_in in zip(everything, choice, strict=True) if is_in)
+    )
     script = keyframes.raised(hello, places, amount, limits, {"joy"})
     script.check(limits)
     assert keyframes.all_keys(script) == keyframes.all_keys(hello)

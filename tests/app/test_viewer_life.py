@@ -66,11 +66,11 @@ def test_slow_frames_lower_the_detail_of_idle_life(viewer, monkeypatch):
     It had all pixels, so that a face blinked at three frames a second beside other programs.
     """
     coarse = LEVELS[COARSEST_IDLE_LEVEL]
-    assert until(viewer, lambda: viewer.schedule.is_left_alone)
+    assert until(viewer, lambda: viewer.schedule.is_idling)
     with monkeypatch.context() as patch:
         patch.setattr(Schedule, "spent", 0.2)
         assert until(viewer, lambda: viewer.surface.detail == coarse)
-        assert viewer.schedule.is_left_alone
+        assert viewer.schedule.is_idling
     monkeypatch.setattr(Schedule, "spent", 0.01)
     assert until(viewer, lambda: viewer.surface.detail != coarse)
 
@@ -107,11 +107,11 @@ def test_panels_lie_beside_the_picture_of_a_smaller_window(viewer):
 
     handle = viewer.surface.handle
     xdotool(viewer, "mousemove", *on_screen(viewer, 450, 200))  # it neither leaves nor enters
-    assert until(viewer, lambda: viewer.schedule.is_left_alone)
+    assert until(viewer, lambda: viewer.schedule.is_idling)
     try:
         glfw.set_window_size(handle, 600, 420)
         assert until(viewer, lambda: viewer.surface.size == (600, 420))
-        assert until(viewer, lambda: viewer.schedule.is_left_alone)
+        assert until(viewer, lambda: viewer.schedule.is_idling)
         left = int(viewer.face.view.area[0])
         seen = viewer.surface.read()[:, :left].astype(int)
         settle(viewer)

@@ -175,7 +175,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
     # The process has low priority, so others run first.
-    assert until(viewer, lambda: all(map(portraits.of, first)), 600.0)
+    assert until(viewer, lambda: all(map(portraits.picture_of, first)), 600.0)
     settle(viewer)
     shot = viewer.surface.read()
     drawn = []
@@ -196,7 +196,7 @@ def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
     settle(viewer)
     viewer.context.wanted_tab = "Face"
     portraits = viewer.context.portraits
-    assert until(viewer, lambda: portraits.of("built-in"))
+    assert until(viewer, lambda: portraits.picture_of("built-in"))
     assert until(viewer, lambda: viewer.schedule.is_idle and not portraits.has_news)
 
 

@@ -65,7 +65,7 @@ def scripts(draw):
         for time in sorted(draw(st.sets(TIMES, max_size=4)))
     ]
     tracks = {
-        name: Channel.of([Key(time, draw(SHARES), draw(EASINGS)) for time in sorted(times)])
+        name: Channel.from_keys([Key(time, draw(SHARES), draw(EASINGS)) for time in sorted(times)])
         for name, times in draw(
             st.dictionaries(st.sampled_from("abc"), st.sets(TIMES, min_size=1, max_size=5))
         ).items()
@@ -195,7 +195,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
 
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_path):
     """Keys, poses and recordings store the visible live face, not the sliders' values."""
-    session.live_override.take({"jaw_open": 0.5}, 1.0)
+    session.live_override.override({"jaw_open": 0.5}, 1.0)
     session.work.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5
     session.work.begin_script()
@@ -204,7 +204,7 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_pat
     session.neutral()
     session.toggle_recording()
     for step in range(30):
-        session.live_override.take({"jaw_open": step / 30.0}, 1.0)
+        session.live_override.override({"jaw_open": step / 30.0}, 1.0)
         session.advance(STEP)
     session.toggle_recording()
     assert session.script.at(0.25)["jaw_open"] == approx(0.5, abs=0.05)

@@ -308,7 +308,7 @@ def test_handles_set_slopes(viewer):
     """
     session = viewer.session
     before = session.script
-    viewer.face.selection.keys = KeySet.of(KeyId(POSES, 1.0))
+    viewer.face.selection.keys = KeySet.from_keys(KeyId(POSES, 1.0))
     settle(viewer)
     graph = viewer.face.timeline.dope_sheet.graph
     first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))

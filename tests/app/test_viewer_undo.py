@@ -34,7 +34,7 @@ def test_a_discarded_pose_is_reported_and_can_be_restored(session, how):
         "seek": lambda: session.seek(3.5),
         "key": lambda: session.seek_key(1),
         "play": session.toggle_playing,
-        "button": session.let_go,
+        "button": session.release_controls,
     }
     line = does[how]()
     assert line is not None
@@ -54,13 +54,13 @@ def test_a_discarded_pose_is_reported_and_can_be_restored(session, how):
 COMMANDS = {
     "slide": lambda s, x: set_by_hand(s, jaw_open=x),
     "link": lambda s, x: (s.set("AU12_left", x, linked=True), s.note()),
-    "joy": lambda s, x: s.toggle_alone("joy"),
+    "joy": lambda s, x: s.toggle_solo("joy"),
     "mirror": lambda s, x: s.mirror(),
     "neutral": lambda s, x: s.neutral(),
     "seek": lambda s, x: s.seek(4.0 * x),
     "next": lambda s, x: s.seek_key(1),
     "key": lambda s, x: s.set_key(),
-    "let go": lambda s, x: s.let_go(),
+    "let go": lambda s, x: s.release_controls(),
     "auto": lambda s, x: setattr(s, "is_keying", x > 0.5),
     "new": lambda s, x: s.work.begin_script(),
     "undo": lambda s, x: s.undo(),
@@ -114,7 +114,7 @@ def test_keys_are_pasted_in_another_script(session, scene):
     """Copied keys do not change with their script, and are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
-    selection.keys = KeySet.of(KeyId(POSES, 1.0), KeyId("blink", 2.12))
+    selection.keys = KeySet.from_keys(KeyId(POSES, 1.0), KeyId("blink", 2.12))
     assert "2 keys copied" in str(selection.copy())
     selection.delete()
     session.work.begin_script()

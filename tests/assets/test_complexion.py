@@ -14,16 +14,16 @@ from risorius.assets.identities import (
     Features,
     Sex,
     coloured,
+    colours_of_number,
     complexion,
     drawn_irises,
     features_of,
     in_colours,
-    in_own_colours,
     make_person,
-    own_colours,
     person_called,
     recoloured,
     sample_identity,
+    with_colours_of_number,
 )
 from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import _behind, _tints, typology_angle
@@ -136,7 +136,7 @@ def test_eyes_have_their_colours(head):
 def test_colours_of_a_number(head):
     """A number always gives the same colours; dark skin goes with brown eyes."""
     person = make_person(sample_identity(0))
-    first, second = (in_own_colours(person, 5) for _ in range(2))
+    first, second = (with_colours_of_number(person, 5) for _ in range(2))
     assert (first.albedo == second.albedo).all()
     assert (first.parts[0].colours == second.parts[0].colours).all()
     brown = coloured(person, angle=40.0, irises="brown").parts[0].colours
@@ -152,7 +152,7 @@ def test_colours_of_a_number(head):
 
     tanned = 0
     for seed in range(12):
-        one = in_own_colours(person, seed)
+        one = with_colours_of_number(person, seed)
         if typology_angle(skin_of(head, one.albedo)) < 0.0:
             tanned += 1
             assert redness(one.parts[0].colours) > 0.6 * redness(brown) > 1.0
@@ -161,7 +161,7 @@ def test_colours_of_a_number(head):
 
 def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
     """Colouring in bands equals colouring at once, byte by byte, for any number of rows."""
-    colours = own_colours(sample_identity(3), 3)
+    colours = colours_of_number(sample_identity(3), 3)
     given = {"features": colours.features, "haired_as": colours.angle, "shrink": 2}
     usual = recoloured(colours.angle, **given)
     for rows in (37, 640):
@@ -352,7 +352,7 @@ def test_small_pictures_have_the_same_colours_of_fewer_texels(number):
     Hair and classes are the same.
     """
     person = make_person(sample_identity(number))
-    colours = own_colours(person.identity, number)
+    colours = colours_of_number(person.identity, number)
     whole = in_colours(person, colours)
     small = in_colours(person, colours, shrink=4)
     assert small.albedo.shape == (320, 320, 3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from risorius.assets.fitting.jaw_place import jaw_axis_of, opening_as_people
+from risorius.assets.fitting.jaw_place import jaw_axis_of, with_human_opening
 
 
 def found_axis(head, size):
@@ -36,7 +36,7 @@ def test_without_ears_no_axis_is_found(head):
 def test_the_opening_grows_with_the_mandible(head):
     """Heads of any size open by the same fraction of the distance from axis to teeth."""
     points = head.vertices[head.landmarks]
-    rig = opening_as_people(head.rig, head.jaw_axis, points)
+    rig = with_human_opening(head.rig, head.jaw_axis, points)
     angle = np.radians(rig["jaw"]["opening_deg"])
     down, forward = (points[66] - head.jaw_axis.mean(axis=0))[1:] * (-1.0, 1.0)
     sunk = forward * np.sin(angle) - down * (1.0 - np.cos(angle))

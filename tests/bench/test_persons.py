@@ -16,5 +16,5 @@ def test_sexes_lie_as_far_apart_as_published():
     for row in rows:
         assert f"\n{row.code:<8}" in text
     jaw = next(row for row in rows if row.code == "go-go")
-    assert (jaw.published_women, jaw.published_apart) == (97.0, approx(6.7))
+    assert (jaw.published_women, jaw.published_difference) == (97.0, approx(6.7))
     assert jaw.women == approx(97.0, abs=5.0)

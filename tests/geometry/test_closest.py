@@ -54,7 +54,7 @@ def test_a_mesh_is_searched_as_often_as_wanted(generator):
     """One search object, used repeatedly, gives the same results as a new one each time."""
     vertices = generator.normal(size=(40, 3))
     faces = np.arange(39).reshape(-1, 3)
-    search = MeshSearch.of(vertices, faces)
+    search = MeshSearch.from_mesh(vertices, faces)
     for count in (5, 1, 0, 9):
         points, normals = generator.normal(size=(2, count, 3))
         found = search.closest(points, normals, 0.5)

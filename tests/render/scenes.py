@@ -96,7 +96,7 @@ def draw(
 
 def still(*parts: Any) -> list[render.PlacedPart]:
     """The parts, placed by bones at rest."""
-    return [render.PlacedPart.of(part, STILL) for part in parts]
+    return [render.PlacedPart.on_bone(part, STILL) for part in parts]
 
 
 def draw_image(

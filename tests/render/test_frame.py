@@ -42,8 +42,8 @@ def frames_of(renderer):
     aside = render.CameraView(turned)
     away = np.eye(4)
     away[:3, 3] = (30.0, 20.0, 10.0)
-    hair = render.PlacedPart.of(HairyBall(), {"cranium": away}, throws_shadow=True)
-    bone = render.PlacedPart.of(Ball(), STILL, lies_beneath=True, throws_shadow=True)
+    hair = render.PlacedPart.on_bone(HairyBall(), {"cranium": away}, throws_shadow=True)
+    bone = render.PlacedPart.on_bone(Ball(), STILL, lies_beneath=True, throws_shadow=True)
     bare = render.Skin(stream)
     return [
         render.Frame(front, shaded, bare, [hair, *still(Ball(bone="eye_left"))]),

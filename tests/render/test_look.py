@@ -37,7 +37,7 @@ def scene(surface, style):
     ball[:3, 3] = (55.0, -30.0, 10.0)
     values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
     skin = render.Skin(stream, values=values)
-    parts = [render.PlacedPart.of(Ball(shine=0.9), {"cranium": ball})]
+    parts = [render.PlacedPart.on_bone(Ball(shine=0.9), {"cranium": ball})]
     line = render.Lines([np.array([(-60.0, 40, 20), (60, -40, -20)])], (0.75, 0.1, 0.1))
     draw(renderer, skin, style, parts=parts, lines=[line], camera=camera)
     return surface.read()

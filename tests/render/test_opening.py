@@ -22,7 +22,7 @@ def rim(width, height, z):
 
 def light(renderer, opening, style=PLAIN):
     """The brightness of a picture of a ball of radius 20, behind an opening (None: without one)."""
-    placed = render.PlacedPart.of(Ball(colour=WHITISH), STILL, opening=opening)
+    placed = render.PlacedPart.on_bone(Ball(colour=WHITISH), STILL, opening=opening)
     return draw(renderer, style=style, parts=[placed]).sum(axis=2)[..., None]
 
 

@@ -27,7 +27,7 @@ def test_parts_move_with_their_bones(renderer):
     for x in (-25.0, 25.0):
         moved = np.eye(4)
         moved[:3, 3] = (x, 0.0, 0.0)
-        frame = draw(renderer, parts=[render.PlacedPart.of(ball, {"eye_left": moved})])
+        frame = draw(renderer, parts=[render.PlacedPart.on_bone(ball, {"eye_left": moved})])
         assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
         places.append(np.nonzero(drawn(frame))[1].mean())
     assert places[0] == approx(47.5 - 21.5, abs=1.5)
@@ -179,7 +179,7 @@ def test_a_hem_of_hair_throws_no_shadow(renderer):
             np.full((len(ball.vertices), 1), dense),
         ]
         hair = reshaped(ball, striation=np.hstack(columns))
-        placed = [render.PlacedPart.of(hair, STILL, throws_shadow=True)]
+        placed = [render.PlacedPart.on_bone(hair, STILL, throws_shadow=True)]
         style = replace(PLAIN, shadows=True)
         lit.append(draw(renderer, wall, style=style, parts=placed).sum(axis=2))
     shaded = (lit[0] - lit[1])[60:, 56:]  # below and right: the key is above at the left

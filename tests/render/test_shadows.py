@@ -118,7 +118,9 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
     before_wall[2, 3] = 30.0
     frames = []
     for is_cast in (True, False):
-        hair = render.PlacedPart.of(HairyBall(), {"cranium": before_wall}, throws_shadow=is_cast)
+        hair = render.PlacedPart.on_bone(
+            HairyBall(), {"cranium": before_wall}, throws_shadow=is_cast
+        )
         frames.append(draw(renderer, wall, style, parts=[hair]))
     within, without = frames
     is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()

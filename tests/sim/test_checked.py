@@ -45,7 +45,7 @@ WRONG = [
     ("controls.set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("controls.pose", "values", "values", TABLES),
     ("controls.pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("controls.take", "values", "values", ARRAYS),
+    ("controls.set_array", "values", "values", ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
     ("touch.kick", "velocities", "velocities", ARRAYS),
     ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # 4 alone is valid

@@ -47,6 +47,6 @@ def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
     assert lips.members.tolist() == list(range(above + below))
     assert (lip_side[lips.vertex] == -lips.below).all()
     assert (lip_side[lips.beside] == lips.below[:, None]).all()
-    assert lips.apart(surface.positions)[:, 0] == approx(0.0)
+    assert lips.separations(surface.positions)[:, 0] == approx(0.0)
     assert np.sort(lips.vertex).tolist() == list(range(above + below))
     assert lips.seal.sum() == approx(2.0 * 80.0)

@@ -37,8 +37,8 @@ def test_value_must_be_within_limits(controls):
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         controls.set("jaw_open", -0.5)
     with pytest.raises(ValueError, match=r"was 1.5, allowed is 0 to 1; clamp it first"):
-        controls.take(np.full(len(controls.names), 1.5))
-    controls.take(np.full(len(controls.names), 0.5))
+        controls.set_array(np.full(len(controls.names), 1.5))
+    controls.set_array(np.full(len(controls.names), 0.5))
     assert set(controls.values.values()) == {0.5}
 
 
@@ -70,6 +70,6 @@ def test_sums_of_values_are_those_of_a_face_that_takes_them(controls):
     found = controls.sums_of(0.5 * values)
     assert controls.values == before
     assert np.array_equal(controls.wanted, wanted)
-    controls.take(0.5 * values)
+    controls.set_array(0.5 * values)
     assert np.array_equal(controls.wanted, found)
     assert (found > 0.0).sum() > 5

@@ -37,7 +37,7 @@ def pull_at(face, vertex, offset, **options):
     firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
     pull = sim.Pull(face, finger, firmness, candidates(face), **options)
     pull.targets = pull.targets + np.asarray(offset)
-    before = pull.short
+    before = pull.remaining
     pull.solve()
     return pull, before
 
@@ -65,7 +65,7 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
     assert next(iter(found)) == "zygomaticus_major_left"
     assert len(found) <= 4
     assert before > 5.0
-    assert pull.short < 2.5
+    assert pull.remaining < 2.5
     off = settled(simulation, found)[corner] - simulation.rest_positions[corner] - drawn
     assert norm(off[:2]) < 2.5
 
@@ -86,7 +86,7 @@ def test_skin_is_held_by_the_muscles_of_anatomy(simulation, head, landmark, offs
     found = values_of(pull)
     assert wanted <= found.keys()
     assert len(found) <= 3
-    assert pull.short < 0.8 * before
+    assert pull.remaining < 0.8 * before
 
 
 def test_skin_without_muscles_does_not_move(simulation, head):
@@ -95,7 +95,7 @@ def test_skin_without_muscles_does_not_move(simulation, head):
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
     assert not pull.changes
-    assert pull.short == approx(before)
+    assert pull.remaining == approx(before)
     crown = int(simulation.rest_positions[:, 1].argmax())
     for candidates_there in (candidates(simulation), []):
         pull = sim.Pull(simulation, [crown], [1.0], candidates_there)
@@ -133,7 +133,7 @@ def test_mirrored_pulls_are_mirrored(simulation, head):
     right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
     mirrored = {name.replace("left", "right"): value for name, value in values_of(left).items()}
     assert values_of(right) == approx(mirrored, abs=0.01)
-    assert right.short == approx(left.short, abs=0.02)
+    assert right.remaining == approx(left.remaining, abs=0.02)
 
 
 def test_the_answer_does_not_depend_on_the_way(simulation, head):
@@ -156,7 +156,7 @@ def test_a_pose_stays_and_is_only_added_to(simulation, head):
     back = simulation.rest_positions[corner] - simulation.positions[corner]
     undone, before = pull_at(simulation, corner, back)
     assert values_of(undone)["zygomaticus_major_left"] < 0.4
-    assert undone.short < 0.3 * before
+    assert undone.remaining < 0.3 * before
 
 
 @pytest.mark.slow
@@ -179,9 +179,9 @@ def test_few_muscles_are_found_again(simulation, head, generator):
         finger = np.flatnonzero(distance < FINGER)
         pull = sim.Pull(simulation, finger, np.ones(len(finger)), candidates(simulation))
         pull.targets = pull.targets + moved[finger]
-        before = pull.short
+        before = pull.remaining
         pull.solve()
         assert len(pull.changes) <= 4
-        shares.append(pull.short / before)
+        shares.append(pull.remaining / before)
     assert max(shares) < 0.3
     assert np.mean(shares) < 0.1

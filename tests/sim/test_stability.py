@@ -143,7 +143,7 @@ def _energy(skin, state, grip):
     beyond = np.maximum(longer - edges.strain_limit * edges.rest_length, 0.0)
     stretched = edges.stiffness * (longer**2 + (edges.stiffening - 1.0) * beyond**2)
     stretched += edges.shear * ((away[j] - away[i]) ** 2).sum(axis=1)
-    apart = lips.apart(state.x - skin.rest)
+    apart = lips.separations(state.x - skin.rest)
     apart[:, 1] -= lips.below * grip.overlap
     sealed = grip.stiffness * lips.seal * (apart**2 @ np.array(SEAL_AXES))
     kinetic = skin.mass[:, None] * state.v**2

@@ -69,7 +69,7 @@ def test_ways_are_the_cheapest(surface, generator, hindrance):
     """Paths are the cheapest, also if they cost more than the search's first limit."""
     stops = [36, 300, 41, 700]
     cost = hindrance * generator.random(surface.vertex_count)
-    way = surface.way_through(stops, cost)
+    way = surface.path_through(stops, cost)
     i, j = surface.edges.T
     graph = undirected(surface, surface.lengths * (1.0 + (cost[i] + cost[j]) / 2.0))
     wanted = scipy.sparse.csgraph.dijkstra(graph, directed=False, indices=stops)

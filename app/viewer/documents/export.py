@@ -75,7 +75,7 @@ class Exporter:
         save_png(target, self._stage.draw_image(self._view))
         return f"Written to {target}"
 
-    def ask(self) -> Message:
+    def open_dialog(self) -> Message:
         """Open the dialog, with the last choices."""
         self.is_asking = True
         if not self.session.differing:
@@ -94,7 +94,7 @@ class Exporter:
         name = "head"
         if head is not None:
             name = head.files[0].stem if head.files else head.called or name
-        ask = partial(files.ask, "Export avatar", self.start_avatar, saving=True)
+        ask = partial(files.open, "Export avatar", self.start_avatar, saving=True)
         ask(suffixes=(".glb",), proposed=f"{as_text(name)}-avatar.glb")
 
     def start_avatar(self, target: Path) -> Message:
@@ -108,7 +108,7 @@ class Exporter:
         check_apart((target,), head.files if head is not None else ())
         check_file(target)
         request = RigRequest(adds_parts=True, progress=False)
-        work = partial(make_avatar, head, target, request, _say_nothing)
+        work = partial(make_avatar, head, target, request, _discard_line)
         written = 8  # comparing and writing take as long as this number of shapes
         self.job = ExportJob(target, Task(work, len(ARKIT) + written, wake_up))
         return None
@@ -187,7 +187,7 @@ class Exporter:
             job.task.stop(waits=True)
 
 
-def _say_nothing(_: str) -> None:
+def _discard_line(_: str) -> None:
     """Discard lines about the head that the command line would print."""
 
 
@@ -286,7 +286,7 @@ class ExportDialog:
             exporter.is_asking = False
             suffix = exporter.kind.suffix
             ask = partial(
-                self._files.ask, self.TITLE, exporter.start, saving=True, suffixes=(suffix,)
+                self._files.open, self.TITLE, exporter.start, saving=True, suffixes=(suffix,)
             )
             ask(proposed=f"{Path(exporter.session.work.name).stem}{suffix}")
 

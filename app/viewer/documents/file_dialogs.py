@@ -95,7 +95,7 @@ class FileDialogs:
         """Whether the dialog is open."""
         return self.request is not None
 
-    def ask(
+    def open(
         self,
         title: str,
         then: Callable[[Path], Message],

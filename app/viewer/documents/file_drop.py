@@ -15,7 +15,7 @@ from risorius.assets.meshes import FORMATS
 from ...errors import UserError
 from ...light_maps import LIGHT_SUFFIXES, check_light_map, open_light
 from ...recordings.reading import is_recording
-from ...scenes import Scene, build_scene, called_head, head_in_words, own_head
+from ...scenes import Scene, build_scene, called_head, fit_users_head, head_in_words
 from ..interface.gui import wake_up
 from ..messages import Message, Task
 from ..settings import Settings
@@ -175,7 +175,7 @@ class FileDrop:
         remark = ""
         complaint = ""
         try:
-            scene = build_scene("face", own_head(mesh, landmarks))
+            scene = build_scene("face", fit_users_head(mesh, landmarks))
             show = partial(self._show_scene, scene)
             remark = f" with {mesh.name}"
         except UnfinishedError as error:  # its marking opens instead
@@ -203,7 +203,7 @@ class FileDrop:
             """Open the map."""
             return self.open([str(path)])
 
-        self._files.ask("Open map of light", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
+        self._files.open("Open map of light", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
 
     def ask_head(self) -> None:
         """Ask for a mesh; show it with the landmark file beside it, or else open its marking."""
@@ -216,4 +216,4 @@ class FileDrop:
             landmarks = next((path for path in own if path.is_file()), None)
             return self.open([str(path) for path in (mesh, landmarks) if path is not None])
 
-        self._files.ask("Open head", go_on, saving=False, suffixes=MESH_SUFFIXES)
+        self._files.open("Open head", go_on, saving=False, suffixes=MESH_SUFFIXES)

@@ -105,7 +105,7 @@ class ScriptCommands:
         title = "Open script, pose or recording"
         recording_suffixes = (".csv", ".json", ".tsv", ".txt")  # the content decides
         ends = (SCRIPT_SUFFIX, *recording_suffixes)
-        self._files.ask(title, self.open, saving=False, suffixes=ends)
+        self._files.open(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:
         """Show the script, pose or recording of a file; if work would be lost, ask first.
@@ -154,7 +154,7 @@ class ScriptCommands:
         name = "script.toml"
         if script.is_converted:
             name = f"{Path(script.source).stem}{SCRIPT_SUFFIX}"
-        self._files.ask(
+        self._files.open(
             "Save script",
             lambda chosen: self._write(chosen, then),
             saving=True,
@@ -177,11 +177,11 @@ class ScriptCommands:
             self.note_recent(path)
             return then() or f"{path}: pose written"
 
-        self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
+        self._files.open("Save pose", write, saving=True, proposed="pose.toml")
 
     def ask_sound(self) -> None:
         """Ask for a sound file, and add it to the script."""
-        self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
+        self._files.open("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
 
     def set_sound(self, path: Path) -> Message:
         """Add a sound file to the script; raises UserError if the file has no sound."""

@@ -218,7 +218,7 @@ class LabelledRows:
         self.begin(label)
         return choose(self._gui, label, present, choices)
 
-    def slide(
+    def slider_row(
         self,
         label: str,
         name: str,

@@ -100,7 +100,7 @@ class Marks:
         return len(self.places) == LANDMARK_COUNT
 
     @property
-    def asked(self) -> int | None:
+    def next_landmark(self) -> int | None:
         """The landmark that must be marked next; None if the rest can be guessed."""
         return next((number for number in FIRST if number not in self.places), None)
 
@@ -156,7 +156,7 @@ class Marking:
         """Whether the marks have turned the mesh upright."""
         return self.placing is self._upright
 
-    def _stand_up(self, known: Mapping[int, Place]) -> None:
+    def _make_upright(self, known: Mapping[int, Place]) -> None:
         """Turn the mesh upright and scale it, once; raises AssetError if no face fits the marks."""
         upright = placing(known)
         if not self.is_upright:
@@ -188,7 +188,7 @@ class Marking:
 
     def note(self) -> Message:
         """Note a complete change for undo; guess the other marks if possible."""
-        can_guess = self.marks.asked is None and not self.marks.is_complete
+        can_guess = self.marks.next_landmark is None and not self.marks.is_complete
         try:
             return self.guess() if can_guess else None
         finally:  # wrong marks stay, so that users can correct them
@@ -202,7 +202,7 @@ class Marking:
         """Guess all marks that no user placed; raises UserError if the placed marks fit no face."""
         with _for_users(cure="; drag points, or undo"):
             found = guess(self.mesh, self.marks.by_hand)
-        self._stand_up(self.marks.by_hand)
+        self._make_upright(self.marks.by_hand)
         self.marks = self.marks.with_guessed(found)
         self._note()
         return "All points are guessed; drag wrong points to their place"
@@ -216,7 +216,7 @@ class Marking:
         self.marks, placing = self.history.go(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)
-        asked = self.marks.asked
+        asked = self.marks.next_landmark
         self.current = self.current if asked is None else asked
 
     # Files
@@ -235,14 +235,14 @@ class Marking:
             marks = marks.placed(number, place)
         if marks.is_complete:
             with _for_users(f"{path.name}: "):
-                self._stand_up(marks.places)
+                self._make_upright(marks.places)
         self.marks = self._saved = Marks(marks.places, guessed)
         self.file = path
         return self.note() or f"{path.name}: {len(places)} landmarks"
 
     def ask_open(self) -> None:
         """Ask for a landmark file, and continue with it."""
-        self._files.ask(
+        self._files.open(
             "Open landmarks", self.open, saving=False, suffixes=(self.LANDMARKS_SUFFIX,)
         )
 
@@ -252,7 +252,7 @@ class Marking:
             return self._write(then, self.file)
         proposed = str(self.path.with_suffix(self.LANDMARKS_SUFFIX).absolute())
         write = partial(self._write, then)
-        ask = partial(self._files.ask, "Save landmarks", write, saving=True)
+        ask = partial(self._files.open, "Save landmarks", write, saving=True)
         ask(proposed=proposed, suffixes=(self.LANDMARKS_SUFFIX,))
         return None
 

@@ -26,7 +26,7 @@ class MarkingMode:
 
     draws_over_picture = True  # the panel draws marks there
     is_at_rest = True
-    is_left_alone = False
+    is_idling = False
     has_news = False
 
     def __init__(

@@ -64,7 +64,7 @@ def places_in(
 ) -> list[ScreenPoint]:
     """Project points (n, 3) by a camera whose picture fills an area of the window [units]."""
     left, top, width, height = area
-    seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))
+    seen = CameraLabels.from_camera(camera, (width, max(height, 1.0))).project(np.asarray(points))
     return [(left + x, top + y) for x, y in seen.tolist()]
 
 
@@ -101,7 +101,7 @@ class MarkingMouse(CameraMouse):
         is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT)
         is_click = is_click and not self._has_moved(io)
         if is_click and not self._put(io):
-            self._messages.say(
+            self._messages.show(
                 "There is no skin here that faces you; click beside the mouth or the eye"
             )
         elif is_click or self._doing == "mark":

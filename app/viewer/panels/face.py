@@ -120,7 +120,7 @@ class ControlRows:
         self._asked: tuple[str, ...] = ()  # the controls whose menu is open
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
-    def of(self, names: tuple[str, ...]) -> list[Row]:
+    def rows_for(self, names: tuple[str, ...]) -> list[Row]:
         """Return the rows of these controls; during a drag, the rows from its beginning."""
         if names not in self._rows or not imgui.is_any_item_active():
             current = self._session.current
@@ -221,10 +221,10 @@ class ControlRows:
         height = imgui.calc_text_size(name or code, wrap_width=wrapped).y + 2.0 * padding.y
         if not is_whole_face:
             imgui.dummy((room, height))
-        elif imgui.selectable(
-            f"##show {row.label}", session.is_alone(row.label), 0, (room, height)
-        )[0]:
-            session.toggle_alone(row.label)
+        else:
+            is_solo = session.is_solo(row.label)
+            if imgui.selectable(f"##show {row.label}", is_solo, 0, (room, height))[0]:
+                session.toggle_solo(row.label)
         self._gui.remember(f"show {row.label}")
         is_pointed = imgui.is_item_hovered()
         hint("\n".join(filter(None, (readable(row.label), action))))
@@ -310,7 +310,7 @@ class FacePanel:
         session = self._session
         folds = self._settings.folds
         current = self._session.current
-        rows = self.rows.of(tuple(names))
+        rows = self.rows.rows_for(tuple(names))
         active = sum(any(current[name] for name in row.names) for row in rows)
         if self.search:
             rows = search_rows(rows, self.search, group=title, actions=session.scene.actions)

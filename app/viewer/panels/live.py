@@ -98,7 +98,9 @@ class LivePanel:
         self._gui.remember("mirror live")
         hint("left and right change places, as in a mirror")
         before = face.calibration
-        gain = self._rows.slide("Gain", "live Gain", before.default_gain, (0.0, MOST_GAIN), 1.0)
+        gain = self._rows.slider_row(
+            "Gain", "live Gain", before.default_gain, (0.0, MOST_GAIN), 1.0
+        )
         face.calibration = replace(before, mirror=mirror, default_gain=gain)
 
     def _draw_channels(self, face: LiveFace) -> None:

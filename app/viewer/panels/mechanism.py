@@ -167,11 +167,11 @@ class MechanismPanel:
             self._gui.remember(label)
             if is_changed:
                 check = partial(_check_count, name, option, chosen, len(scene.faces))
-                self._messages.carry_out(partial(_put_checked, check, put, chosen))
+                self._messages.carry_out(partial(_set_checked, check, put, chosen))
         elif option.kind == "number":
             limits = option.least or 0.0, 2.0 * float(default) or 1.0  # the look's is the middle
             digits = max(3, 1 - math.floor(math.log10(limits[1])))
-            slid = self._rows.slide(label, name, float(value), limits, default, digits=digits)
+            slid = self._rows.slider_row(label, name, float(value), limits, default, digits=digits)
             if slid != value:
                 put(slid)
                 _keep_in_order(stored, name, slid, {**self._defaults(), **of_look})
@@ -198,7 +198,7 @@ class MechanismPanel:
         self._rows.put("Skin", present, possible, partial(setattr, display, "skin"))
         if self._stage.scene.skin.wrinkles is not None:
             now = display.wrinkles
-            display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
+            display.wrinkles = self._rows.slider_row("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._rows.switch("Wireframe")
         self._rows.switch("Colour by splits")
         imgui.same_line(self._rows.second)
@@ -215,7 +215,7 @@ class MechanismPanel:
             now = display.skin_opacity
             label = "Skin opacity"
             name = "skin_opacity"
-            display.skin_opacity = self._rows.slide(label, name, now, (0.0, 1.0), OPACITY)
+            display.skin_opacity = self._rows.slider_row(label, name, now, (0.0, 1.0), OPACITY)
             self._rows.pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:
@@ -254,7 +254,7 @@ def _check_count(name: str, option: refine.Option, count: int, face_count: int) 
         )
 
 
-def _put_checked(check: Callable[[], None], put: Callable[[int], None], count: int) -> None:
+def _set_checked(check: Callable[[], None], put: Callable[[int], None], count: int) -> None:
     check()
     put(count)
 

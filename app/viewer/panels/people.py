@@ -69,7 +69,7 @@ class PeopleList:
         high = imgui.get_item_rect_max()
         side = high.y - low.y
         paper = imgui.get_window_draw_list()
-        picture = self._portraits.of(who)
+        picture = self._portraits.picture_of(who)
         if picture is not None:
             paper.add_image_rounded(
                 picture,

@@ -56,7 +56,9 @@ class ScenePanel:
         camera = self._view.camera
         widest = 5.0, 90.0  # [degrees]
         now = camera.field_of_view
-        chosen = rows.slide("Lens", "lens", now, widest, render.OrbitCamera.field_of_view, digits=0)
+        chosen = rows.slider_row(
+            "Lens", "lens", now, widest, render.OrbitCamera.field_of_view, digits=0
+        )
         if chosen != now:
             camera.change_lens(chosen)
         if scene.called:

@@ -183,7 +183,7 @@ class Mouse(CameraMouse):
 
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
-            self._messages.attempt(self.skin_drag.let_go)
+            self._messages.attempt(self.skin_drag.release)
             if not self.is_dragging_skin and not self._has_moved(io):
                 name = self.skin_drag.muscle()
                 if name is not None:

@@ -28,7 +28,7 @@ from ...capture import Capture, CaptureOptions
 from ...errors import UserError
 from ...pictures import Image, save_png
 from ...scenes import BUILT_IN, build_face, called_head
-from ...workers import Send, WorkerPool, give_way, share_of_cores
+from ...workers import Send, WorkerPool, lower_priority, share_of_cores
 
 SIDE = 128  # side of a square picture [pixels]
 
@@ -87,7 +87,7 @@ class Portraits:
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
             self._textures[name] = texture
 
-    def of(self, who: int | str) -> imgui.ImTextureRef | None:
+    def picture_of(self, who: int | str) -> imgui.ImTextureRef | None:
         """Return the picture of a person; None if it is not drawn yet."""
         drawn = self._textures.get(who)
         return None if drawn is None else imgui.ImTextureRef(drawn.glo)
@@ -99,7 +99,7 @@ class Portraits:
 
 def draw_portraits(people: Sequence[int | str], send: Send) -> None:
     """Draw each person at rest, store the picture and send it; runs in a process."""
-    give_way(10)  # so that the window stays fast
+    lower_priority(10)  # so that the window stays fast
     _remove_stale()
     for who in people:
         scene = build_face(None if who == BUILT_IN else called_head(who))

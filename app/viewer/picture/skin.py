@@ -133,7 +133,7 @@ class SkinDrag:
         """Return the muscle at the dragged point, or None."""
         return muscle_at(self._simulation, self.point)
 
-    def let_go(self) -> Message:
+    def release(self) -> Message:
         """End the drag: muscles hold the skin, or it swings back; return a message."""
         self.drop()
         if self._pull is None:
@@ -166,7 +166,7 @@ class SkinDrag:
         if not solved:
             return "No muscle moves the skin this way; with Ctrl it is pulled without muscles"
         moved = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
-        return f"{', '.join(moved).capitalize()}; {pull.short:.1f} mm short of the mouse"
+        return f"{', '.join(moved).capitalize()}; {pull.remaining:.1f} mm short of the mouse"
 
 
 def _touched(simulation: sim.Simulation, point: Floats64, sight: Floats64, near: Flags) -> Flags:

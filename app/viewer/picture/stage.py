@@ -20,7 +20,7 @@ from imgui_bundle import imgui
 from risorius import render
 
 from ...capture.captions import Label, captioned, labels
-from ...capture.drawing import check_camera, whole_scene
+from ...capture.drawing import camera_for_whole_scene, check_camera
 from ...light_maps import SceneLight, scene_light
 from ...pictures import Image
 from ...pipeline import Pipeline, Viewport
@@ -57,7 +57,7 @@ class SceneView:
         """Frame the whole scene from the script's view; raises UserError for an unknown view."""
         script = self._session.script
         check_camera(script.camera, script.source)
-        self.camera = whole_scene(self._session.scene, script.camera)
+        self.camera = camera_for_whole_scene(self._session.scene, script.camera)
 
     def look_from(self, label: str) -> None:
         """Turn the camera to one of `render.VIEWS`, about its target."""
@@ -263,7 +263,7 @@ def style_of(
     return render.Style(
         shading=render.Shading(display.shading),
         wireframe=display.wireframe,
-        colour_by=render.ColourBy.of(splits=display.splits, wires=display.wires),
+        colour_by=render.ColourBy.from_switches(splits=display.splits, wires=display.wires),
         textured=is_textured,
         skin_maps=display.skin_maps,
         albedo=albedo,
@@ -393,7 +393,7 @@ class Painter:
         try:
             self._stage.draw(self._view)
         except PlugInError as error:  # work goes on, with the unrefined mesh
-            self._messages.say(str(error), error=True)
+            self._messages.show(str(error), error=True)
             self._stage.give_up_refinement()
             self._stage.draw(self._view)
         self._painted = state, detail

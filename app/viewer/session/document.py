@@ -56,9 +56,9 @@ class LiveOverride:
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
         self._names: tuple[str, ...] | None = None
-        self.take({}, 0.0)
+        self.override({}, 0.0)
 
-    def take(self, controls: Mapping[str, float], share: float) -> None:
+    def override(self, controls: Mapping[str, float], share: float) -> None:
         """Set the overriding controls and their weight; unknown names are left out."""
         if (names := tuple(controls)) != self._names:  # a stream has the same names in each frame
             self._names = names
@@ -97,7 +97,7 @@ class ScriptFile:
         self._bytes = _bytes_of(path)
 
     @classmethod
-    def of(cls, script: Script) -> ScriptFile:
+    def from_script(cls, script: Script) -> ScriptFile:
         """Return the file of a script; its path is None for examples and recordings."""
         path = Path(script.source)
         is_own = not script.is_converted and path.is_file()

@@ -69,7 +69,7 @@ class LiveCommands:
         if self.face is not None:
             self.face.close()
         self.face = None
-        self._session.live_override.take({}, 0.0)
+        self._session.live_override.override({}, 0.0)
 
     def toggle(self) -> Message:
         """Start or stop listening."""
@@ -97,7 +97,7 @@ class LiveCommands:
         shown = face.state, face.received > 0
         self.has_changed = shown != self._shown
         self._shown = shown
-        self._session.live_override.take(face.controls(), face.presence)
+        self._session.live_override.override(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
             return "This face is neutral now"
         return None

@@ -129,7 +129,7 @@ class Physics:
         return self._still_for > CALM_SECONDS
 
     @property
-    def is_left_alone(self) -> bool:
+    def is_idling(self) -> bool:
         """Whether nobody has moved the face for some time, and it only has idle life."""
         left_alone_seconds = 0.5  # [s] without a user's motion until only idle life is left
         return self._left_for > left_alone_seconds
@@ -172,7 +172,7 @@ class Physics:
             self._still_for = 0.0
         else:
             self._still_for += steps * STEP
-        self.has_moved = not self.is_left_alone or self._is_to_be_seen()
+        self.has_moved = not self.is_idling or self._is_to_be_seen()
         if self.has_moved:
             self._seen = scene.positions.copy()
             self._seen_bones = scene.bone_transforms()

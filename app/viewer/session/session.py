@@ -31,7 +31,7 @@ class Session:
         self.controls = SceneControls(scene)
         self.values = script.values(0.0, scene.limits)
         self.script = script
-        self.file = ScriptFile.of(script)
+        self.file = ScriptFile.from_script(script)
         self.time = 0.0
         self.speed = 1.0
         self.is_playing = self.is_looping = self.is_keying = False  # keying: changes become keys
@@ -67,12 +67,12 @@ class Session:
             self.pose_is_unsaved = self._is_touched = True
             self._moved |= names
 
-    def toggle_alone(self, name: str) -> None:
+    def toggle_solo(self, name: str) -> None:
         """Show this control alone at its limit; if that is already so, show the neutral face."""
-        pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
+        pose = self.scene.limits.pose({}) if self.is_solo(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
-    def is_alone(self, name: str) -> bool:
+    def is_solo(self, name: str) -> bool:
         """Whether only this control is set, and at its limit."""
         return self.values == self.controls.alone(name)
 
@@ -166,7 +166,7 @@ class Session:
     def toggle_playing(self) -> Message:
         """Play or pause; at the end of the script, play from its beginning."""
         self.is_playing = not self.is_playing
-        line = self.let_go() if self.is_playing else None
+        line = self.release_controls() if self.is_playing else None
         is_over = self.time >= self.script.duration and not self.is_recording
         if self.is_playing and (is_over or self.time == 0.0):
             self.start_over()
@@ -177,14 +177,14 @@ class Session:
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
-        self.scene.take(self.current)
+        self.scene.set_controls(self.current)
         if any(self.current.numbers):
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
         """Show the script's pose at a time; the message names the controls that this resets."""
         self._refuse_while_recording()
-        line = self.let_go()
+        line = self.release_controls()
         self._go_to(time)
         return line
 
@@ -193,7 +193,7 @@ class Session:
         self._follow_script()
         self.pose_is_unsaved = False
 
-    def let_go(self) -> Message:
+    def release_controls(self) -> Message:
         """Follow the script again; the message names released controls, which undo restores."""
         if self.is_following or self.is_recording:
             return None
@@ -251,7 +251,7 @@ class Session:
         else:
             chosen = set(names)
             left = set(self.differing - chosen)
-            self.script = keyframes.keyed_alone(self.script, time, values, chosen)
+            self.script = keyframes.with_keys_of(self.script, time, values, chosen)
             self._moved -= chosen
         self.is_playing = False
         if left:
@@ -274,7 +274,7 @@ class Session:
         current = self.current
         if self.recorder is not None:
             self.recorder.add(self.time, current)
-        self.scene.take(self.scene.limits.pose(beneath, current) if beneath else current)
+        self.scene.set_controls(self.scene.limits.pose(beneath, current) if beneath else current)
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
@@ -349,7 +349,7 @@ class Work:
             pose = script.values(0.0, self._session.scene.limits)
             self._session.set_pose(pose, is_unsaved=False)
         else:
-            self._session.replace_script(script, ScriptFile.of(script))
+            self._session.replace_script(script, ScriptFile.from_script(script))
 
     def begin_script(self) -> None:
         """Begin a script with the current face as its pose, to which keys can be added."""

@@ -103,7 +103,7 @@ class DopeSheet:
             self._all = all_tracks(script, self._session.controls.groups)
             self.selection.keys &= keyframes.all_keys(script)
         self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
-        self.graph.take(self.rows)
+        self.graph.display(self.rows)
 
     def draw(self, height: float) -> None:
         """Draw everything inside the timeline's window. height: [window units]."""

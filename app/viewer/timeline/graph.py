@@ -62,7 +62,7 @@ class Graph:
         self._bottom = 0.0  # y of the lowest value [window units]
         self.slope = -1.0  # change of y for a value of 1 [window units]
 
-    def take(self, rows: Iterable[Track]) -> None:
+    def display(self, rows: Iterable[Track]) -> None:
         """Display the curves of these rows; those with selected keys are in front."""
         self.curves = sorted((row for row in rows if row.control), key=self._is_selected)
 
@@ -96,7 +96,7 @@ class Graph:
             away = np.hypot(axis.x(times) - x, self.y(values) - y)
             if len(away) and away.min() < reach:
                 number = int(away.argmin())
-                key = KeySet.of(KeyId(curve.track, float(times[number])))
+                key = KeySet.from_keys(KeyId(curve.track, float(times[number])))
                 if not self._is_dense(curve) or key <= self._selection.keys:
                     hits.append((away[number], Hit(curve, float(values[number]), key)))
         distance, hit = min(hits, key=lambda each: each[0], default=(0.0, None))
@@ -123,7 +123,7 @@ class Graph:
                 reach = em(self.MOUSE_REACH)
                 if easing.is_held or right - x < 3.0 * reach or abs(there - y) < reach:
                     continue  # no easing, or no room
-                key = KeySet.of(KeyId(curve.track, float(times[1])))
+                key = KeySet.from_keys(KeyId(curve.track, float(times[1])))
                 across = (right - x) / 3.0
                 rise = (there - y) / 3.0
                 first = x + across, y + slopes[0] * rise

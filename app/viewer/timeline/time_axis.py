@@ -25,7 +25,7 @@ class TimeAxis:
         self._left = 0.0
         self._width = 1.0
 
-    def show_whole(self) -> None:
+    def show_whole_script(self) -> None:
         """Show the whole script."""
         self.is_whole = True
 

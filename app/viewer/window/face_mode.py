@@ -117,9 +117,9 @@ class FaceMode:
         )
 
     @property
-    def is_left_alone(self) -> bool:
+    def is_idling(self) -> bool:
         """Whether nobody has moved the face for some time, and it only has idle life."""
-        return self.physics.is_left_alone
+        return self.physics.is_idling
 
     @property
     def has_news(self) -> bool:
@@ -140,9 +140,7 @@ class FaceMode:
         life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
         advance = partial(physics.advance, seconds, is_skin_dragged=is_skin_dragged)
         messages.attempt(partial(advance, is_urgent=live.is_urgent, life=life))
-        return self.painter.paint(
-            elapsed, has_moved=physics.has_moved, is_alive=physics.is_left_alone
-        )
+        return self.painter.paint(elapsed, has_moved=physics.has_moved, is_alive=physics.is_idling)
 
     def draw_panels(self) -> None:
         """Draw the panels, and give the picture its place."""

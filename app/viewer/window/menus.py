@@ -90,7 +90,7 @@ def file_menu(
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
         command("Screenshot", "F12", exporter.screenshot, begins_section=True),
-        export("Export", "Ctrl+E, F10", exporter.ask, submenu=lambda: exports),
+        export("Export", "Ctrl+E, F10", exporter.open_dialog, submenu=lambda: exports),
         command("Quit", "Ctrl+Q", close, begins_section=True),
     )
 
@@ -102,7 +102,7 @@ def export_menu(exporter: Exporter, files: FileDialogs) -> Menu:
             "File",
             "Film, pictures or motion ...",
             "Ctrl+E, F10",
-            exporter.ask,
+            exporter.open_dialog,
             can_run=lambda: exporter.job is None,
             words="export film video mp4 gif webm pictures; motion usd glb gltf obj pc2 vtkhdf npz",
         ),
@@ -142,7 +142,7 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
         command("To the start", "Home", partial(session.seek, 0.0), begins_section=True),
         command("To the key before", "Left", partial(session.seek_key, -1)),
         command("To the next key", "Right", partial(session.seek_key, 1)),
-        command("Show the whole script", "Shift+F", axis.show_whole),
+        command("Show the whole script", "Shift+F", axis.show_whole_script),
     )
 
 
@@ -178,7 +178,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     return (
         edit("Set key", "K", selection.set_key),
         edit("Key whole pose", "Shift+K", selection.key_whole_pose),
-        command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
+        command("Let go", "", session.release_controls, can_run=lambda: bool(session.differing)),
         switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
         change("Copy", "Ctrl+C", selection.copy, begins_section=True),
         command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
@@ -243,7 +243,7 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
 def expression_keys(session: Session) -> Menu:
     """Return commands without a menu: keys 1 to 9 show the first expressions of the scene."""
     return tuple(
-        Command("", readable(name), str(number), partial(session.toggle_alone, name))
+        Command("", readable(name), str(number), partial(session.toggle_solo, name))
         for number, name in enumerate(session.scene.expressions[:9], start=1)
     )
 

@@ -47,7 +47,7 @@ class Mode(Protocol):
         """Whether everything is at rest, and stays at rest without an event."""
 
     @property
-    def is_left_alone(self) -> bool:
+    def is_idling(self) -> bool:
         """Whether the face only has idle life."""
 
     @property

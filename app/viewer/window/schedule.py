@@ -73,10 +73,10 @@ class Schedule:
         )
 
     @property
-    def is_left_alone(self) -> bool:
+    def is_idling(self) -> bool:
         """Whether the face only has idle life, and nothing else happens."""
         return (
-            self._mode().is_left_alone
+            self._mode().is_idling
             and not self.is_awake
             and not self._context.messages.is_fading
             and not self._context.files.is_waiting
@@ -93,7 +93,7 @@ class Schedule:
         life_wait = 1.0 / 15.0  # [s] from one frame of idle life to the next
         if self.is_idle:
             self.sleep()
-        elif self.is_left_alone:
+        elif self.is_idling:
             spent = self.spent
             gui.read_events(max(life_wait - spent, spent))
         elif live.is_receiving and not live.has_frame:

@@ -102,9 +102,11 @@ class Viewer:
             settings.note_recent(kept)
             complaint = complaint or f"unsaved work is in File > Recent: {kept.name}"
         if complaint:
-            self.messages.say(complaint, error=True)
+            self.messages.show(complaint, error=True)
         elif self._settings_path is not None and not self._settings_path.exists():
-            self.messages.say("Drag the skin, or open one of File > Examples; menus show every key")
+            self.messages.show(
+                "Drag the skin, or open one of File > Examples; menus show every key"
+            )
 
     def __enter__(self) -> Viewer:
         self.schedule.restart()
@@ -165,7 +167,7 @@ class Viewer:
         is_moving = mode.paint(elapsed)
         if mode.has_news:
             schedule.wake()
-        if schedule.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+        if schedule.is_idling and not (is_moving or imgui.get_io().want_text_input):
             return  # the picture stays; the cursor blinks in a line of text
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
@@ -197,7 +199,7 @@ class Viewer:
         mode = self.mode
         size = self.surface.size
         is_answering = self.schedule.is_awake or imgui.is_any_item_active()
-        if not self.schedule.is_left_alone:  # idle life moves no slider
+        if not self.schedule.is_idling:  # idle life moves no slider
             self._panels_age += elapsed
         has_input = mode.draws_over_picture or (is_answering and not mode.mouse.is_dragging)
         fluent = 1.0 / 30.0  # [s] for a frame; slower ones draw the panels in every third frame
@@ -258,7 +260,7 @@ class Viewer:
         self.context.stage.set_scene(scene, display)
         self.face.begin_anew()
         if refused:
-            self.messages.say(refused)
+            self.messages.show(refused)
 
     def read(self, mesh: Path, landmarks: Path | None = None) -> Task:
         """Read a mesh, in any thread; return a task that opens the marking of its landmarks.
@@ -290,7 +292,7 @@ class Viewer:
         job = self.exporter.job
         if job is not None and not job.task.is_stopped:
             name = job.target.name
-            self.messages.say(f"{name} is being written; wait, or cancel it first", error=True)
+            self.messages.show(f"{name} is being written; wait, or cancel it first", error=True)
             return None
         if self.is_leaving:
             return self._close()

@@ -9,7 +9,7 @@ from risorius.assets.sheets import make_grid
 from risorius.bench.canvas import Canvas
 from risorius.bench.reproduce import figure_8
 from risorius.bench.reproduce.experiments import EXPERIMENTS
-from risorius.bench.reproduce.figure_9 import Waving, levels_apart, outline_apart
+from risorius.bench.reproduce.figure_9 import Waving, grey_level_difference, outline_difference
 
 DRAWN = [each for each in EXPERIMENTS if each.picture]
 
@@ -56,8 +56,8 @@ def plane() -> Iterator[Waving]:
 def test_nothing_is_off_from_itself(plane):
     """The measures are 0 for the reference itself, and detect another shade and another outline."""
     truth = plane.true_image(0.0)
-    assert levels_apart(truth, truth) == outline_apart(truth, truth) == 0.0
+    assert grey_level_difference(truth, truth) == outline_difference(truth, truth) == 0.0
     shows = truth.mean(axis=2) < 250
     lighter = np.where(shows[..., None], truth + 8, truth).astype(np.uint8)
-    assert levels_apart(lighter, truth) == pytest.approx(8.0, abs=0.5)
-    assert 0.01 < outline_apart(np.roll(truth, 3, axis=1), truth) < 0.1
+    assert grey_level_difference(lighter, truth) == pytest.approx(8.0, abs=0.5)
+    assert 0.01 < outline_difference(np.roll(truth, 3, axis=1), truth) < 0.1

@@ -23,7 +23,7 @@ def states_of(length):
 
 def inner_lines(state):
     """Sides of subtriangles inside the triangle, as pairs of points."""
-    triangles = TABLES.patterns.of(state).tolist()
+    triangles = TABLES.patterns.subtriangles_of(state).tolist()
     sides = [(t[k], t[(k + 1) % 3]) for t in triangles for k in range(3)]
     return {(a, b) for a, b in sides if a < b and (b, a) in sides}
 
@@ -44,7 +44,7 @@ def test_entries(length):
     """Every entry is a valid tessellation with as many subtriangles as in the 27-entry table."""
     for state in states_of(length):
         splits = coherence.splits_in(TABLES.sequences[state])
-        triangles = TABLES.patterns.of(state)
+        triangles = TABLES.patterns.subtriangles_of(state)
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
         configuration = configuration_of(splits)
         assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
