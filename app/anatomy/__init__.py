@@ -149,7 +149,10 @@ class Anatomy:
             # Locks near the cut would float above the skull of the other side.
             is_lock = part.name.startswith(HAIR) and part.strand_radius > 0.0
             least = CUT_LOCKS if is_lock else 0.0
-            self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < -least])
+            is_bent = isinstance(part, BentPart)
+            whole = part.rest if is_bent else part
+            half = replace(whole, faces=part.faces[side * aside < -least])
+            self._halves[side, part.name] = BentPart(half) if is_bent else half
         half = self._halves[side, part.name]
         if isinstance(part, BentPart):
             half.vertices = part.vertices

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from risorius.geometry.arrays import Floats32, Floats64, Integers, Integers32
+from risorius.assets.model import Part
+from risorius.geometry.arrays import Floats64, Integers
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
@@ -37,21 +37,22 @@ class FaceNow(NamedTuple):
         return there
 
 
-@dataclass(eq=False, kw_only=True)
 class BentPart:
-    """A part that changes its shape; it is drawn like any other part (render/parts.py)."""
+    """A part that changes its shape; it is drawn like any other part (render/parts.py).
 
-    name: str
-    vertices: Floats32
-    normals: Floats32
-    faces: Integers32
-    colours: Floats32
-    bone: str
-    shine: float
-    is_enclosed: bool
-    strand_radius: float
-    striation: ClassVar[None] = None
-    roots: ClassVar[None] = None
+    It has all attributes of `rest`, the part at rest, except those that change.
+    """
+
+    def __init__(self, rest: Part) -> None:
+        self.rest = rest
+        self.vertices = rest.vertices
+        self.normals = rest.normals
+        self.colours = rest.colours
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "rest":  # a copy has no attributes yet
+            raise AttributeError(name)
+        return getattr(self.rest, name)
 
     def follow(self, now: FaceNow) -> None:
         """Change the shape to fit the current face, relative to the part's bone."""
@@ -60,9 +61,4 @@ class BentPart:
     def take_shape(self, vertices: Floats64) -> None:
         """Set the vertices, shape (n, 3), and compute their normals."""
         self.vertices = read_only(vertices.astype(np.float32))
-        self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
-
-
-def drawn_attributes(part: Any) -> dict[str, Any]:
-    """Return the attributes of a part that drawing needs."""
-    return {each.name: getattr(part, each.name) for each in fields(BentPart)}
+        self.normals = read_only(vertex_normals(vertices, self.rest.faces).astype(np.float32))

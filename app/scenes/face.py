@@ -121,7 +121,7 @@ class FaceScene(Scene):
         return self.simulation.bones.transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
-        """Return the lowest layer's controls that a control at its limit moves, and how far."""
+        """Return the lowest controls that a control moves at its limit, and their changes."""
         controls = self.simulation.controls
         if name not in self._moved_by:
             at_most = self.limits.pose({name: self.limits[name][1]})

@@ -12,7 +12,7 @@ from risorius.assets.identities.mask import SHAPE
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_normals
 
-from .bent_part import BentPart, FaceNow, drawn_attributes
+from .bent_part import BentPart, FaceNow
 
 
 class Mask(BentPart):
@@ -20,9 +20,8 @@ class Mask(BentPart):
 
     def __init__(self, part: Any, skin: Floats64) -> None:
         """Make a mask that lies on a skin at rest, (V, 3)."""
-        super().__init__(**drawn_attributes(part))
+        super().__init__(part)
         self._rest = part.vertices.astype(np.float64)
-        self._shares = part.mandible_shares
         count = SHAPE[0] * SHAPE[1]
         sheet = self._rest[:count]
         # Smooth normals ignore the pleats.
@@ -39,7 +38,7 @@ class Mask(BentPart):
 
     def follow(self, now: FaceNow) -> None:
         """Change the shape to fit the current skin."""
-        moved = stretched_walls(self._rest, self._shares, now.mandible())
+        moved = stretched_walls(self._rest, self.mandible_shares, now.mandible())
         clearance = 2.0  # [mm]
         heights = self._heights(now.skin_on("cranium"), moved[: len(self._outward)])
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)

@@ -6,18 +6,18 @@ Colours are darker toward the back of the mouth, where less light arrives.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
-from risorius.assets.model import MASK
+from risorius.assets.model import MASK, Part
 from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.read_only import read_only
 
-from .bent_part import BentPart, FaceNow, drawn_attributes
+from .bent_part import BentPart, FaceNow
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of parts; the cavity is dark already
 
@@ -44,13 +44,17 @@ GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of t
 GUM_SHADE = 0.35
 
 
-@dataclass(eq=False, kw_only=True)
 class Tongue(BentPart):
     """The tongue, which is darker toward the back."""
 
-    unlit: Floats32  # colours of the tongue in full light
-    front: float  # z of the front teeth [mm]
     shape: Floats64 | None = None  # array of the last `follow`
+
+    def __init__(self, part: Part, front: float) -> None:
+        """Paint a tongue; front: z of the front teeth [mm]."""
+        super().__init__(replace(part, shine=0.42))  # wet
+        self.front = front
+        self.unlit = read_only(_painted_tongue(part))  # in full light
+        self.colours = read_only(_shaded(part.vertices, self.unlit, front, TONGUE))
 
     def follow(self, now: FaceNow) -> None:
         """Set another shape and its colours; do nothing if the array is the same."""
@@ -61,11 +65,9 @@ class Tongue(BentPart):
         self.colours = read_only(_shaded(self.shape, self.unlit, self.front, TONGUE))
 
 
-@dataclass(eq=False, kw_only=True)
 class MouthWalls(BentPart):
     """The walls of the mouth, which stretch between both jaws."""
 
-    at_rest: Any  # Part
     jaw: tuple[float, ...] = ()  # values of the jaw at the last `follow`
 
     def follow(self, now: FaceNow) -> None:
@@ -74,11 +76,11 @@ class MouthWalls(BentPart):
             return
         self.jaw = now.jaw
         if not any(now.jaw):
-            self.vertices = self.at_rest.vertices
-            self.normals = self.at_rest.normals
+            self.vertices = self.rest.vertices
+            self.normals = self.rest.normals
             return
-        rest = self.at_rest.vertices.astype(np.float64)
-        self.take_shape(stretched_walls(rest, self.at_rest.mandible_shares, now.mandible()))
+        rest = self.rest.vertices.astype(np.float64)
+        self.take_shape(stretched_walls(rest, self.mandible_shares, now.mandible()))
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
@@ -88,12 +90,9 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     def shaded(part: Any) -> Any:
         """Return a darkened part of the mouth, or another part unchanged."""
         if part.name == "tongue":
-            unlit = read_only(_painted_tongue(part))
-            colours = read_only(_shaded(part.vertices, unlit, front, TONGUE))
-            drawn = {**drawn_attributes(part), "colours": colours, "shine": 0.42}  # wet
-            return Tongue(**drawn, unlit=unlit, front=float(front))
+            return Tongue(part, float(front))
         if part.mandible_shares is not None and part.name != MASK:
-            return MouthWalls(**drawn_attributes(part), at_rest=part)
+            return MouthWalls(part)
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)

@@ -16,7 +16,7 @@ from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.read_only import read_only
 
-from .bent_part import BentPart, FaceNow, drawn_attributes
+from .bent_part import BentPart, FaceNow
 
 
 class SkinPart(BentPart):
@@ -24,11 +24,9 @@ class SkinPart(BentPart):
 
     def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
         """Bind a part with `roots` to the skin at rest, (V, 3), with triangles (F, 3)."""
-        from risorius.refine import (
-            Embedding,
-        )  # lists of controls do not need it
+        from risorius.refine import Embedding  # lists of controls do not need it
 
-        super().__init__(**drawn_attributes(part))
+        super().__init__(part)
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
         roots, root_of = np.unique(part.roots, return_inverse=True)  # number of each vertex's root

@@ -130,7 +130,7 @@ def test_a_mask_has_no_neck_that_fades():
 
 def lower_edge(walls):
     """Current places of the wall vertices that follow the mandible most."""
-    return walls.vertices[walls.at_rest.mandible_shares > 0.9]
+    return walls.vertices[walls.mandible_shares > 0.9]
 
 
 def test_walls_stretch_with_the_jaw(face):
@@ -149,7 +149,7 @@ def test_walls_stretch_with_the_jaw(face):
     mandible = face.bone_transforms()["mandible"]
     moved = edge @ mandible[:3, :3].T + mandible[:3, 3]
     assert norm(lower_edge(walls) - moved, axis=1).max() < 2.5
-    fixed = walls.at_rest.mandible_shares == 0.0
+    fixed = walls.mandible_shares == 0.0
     assert np.array_equal(walls.vertices[fixed], rest[fixed])
     assert np.allclose(norm(walls.normals, axis=1), 1.0, atol=1e-4)
     stretched = walls.vertices
