@@ -102,8 +102,7 @@ def _embedded(
                 *coarse,
                 vertices[wrong],
                 normals=normals[wrong],
-                labels=np.zeros(len(wrong), np.int32),
-                face_labels=is_other_lip.astype(np.int32),
+                labels=(np.zeros(len(wrong), np.int32), is_other_lip.astype(np.int32)),
             )
             triangles[wrong] = better.triangles
             weights[wrong] = better.weights

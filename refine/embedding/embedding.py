@@ -65,8 +65,7 @@ class Embedding:
         points: npt.ArrayLike,
         *,
         normals: npt.ArrayLike | None = None,
-        labels: npt.ArrayLike | None = None,
-        face_labels: npt.ArrayLike | None = None,
+        labels: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         crease_angle: float | None = None,
         stretch_offsets: bool = False,
         places: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
@@ -76,16 +75,16 @@ class Embedding:
 
         `normals`: directions in which the fine surface faces, of any length, shape (N, 3); a zero
         vector allows any direction. A triangle that faces the other way counts as ten mean edges
-        farther away, so no vertex of one lip is bound to the other lip where they touch. `labels`,
-        integers of shape (N,), and `face_labels`, (F,): a fine vertex is bound only to triangles
-        with the same label. `crease_angle`: edges that are sharper at rest [degrees] stay sharp.
-        `stretch_offsets`: whether offsets are also scaled by the stretch of the surface around
-        them; else they only turn. `groups`, integers of shape (N,): fine vertices with the same
-        number are bound to the point of the first of them, so a hair keeps its shape. `places`:
-        triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace the search:
-        one for each group, numbered from 0 on, or one for each fine vertex. Raises ValueError for
-        arrays that do not fit together, points that are not finite, and labels or places without a
-        triangle that has an area.
+        farther away, so no vertex of one lip is bound to the other lip where they touch. `labels`:
+        integers of fine vertices, shape (N,), and of triangles, (F,); a fine vertex is bound only
+        to triangles with its label. `crease_angle`: edges that are sharper at rest [degrees] stay
+        sharp. `stretch_offsets`: whether offsets are also scaled by the stretch of the surface
+        around them; else they only turn. `groups`, integers of shape (N,): fine vertices with the
+        same number are bound to the point of the first of them, so a hair keeps its shape.
+        `places`: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace
+        the search: one for each group, numbered from 0 on, or one for each fine vertex. Raises
+        ValueError for arrays that do not fit together, points that are not finite, and labels or
+        places without a triangle that has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
@@ -101,7 +100,7 @@ class Embedding:
         if places is not None:
             found = _checked_places(places, labels, members, is_proper, len(fine))
         else:
-            bound, label_of = _groups(labels, face_labels, len(fine), is_proper)
+            bound, label_of = _groups(labels, len(fine), is_proper)
             found = nearest_places(fine, directions, rest, triangles, bound)
             surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
             settle(fine, surface, across_edges(mesh, label_of), *found)
@@ -191,7 +190,7 @@ def _shared_by_groups(
 
 def _checked_places(
     places: tuple[npt.ArrayLike, npt.ArrayLike],
-    labels: npt.ArrayLike | None,
+    labels: tuple[npt.ArrayLike, npt.ArrayLike] | None,
     groups: Integers64 | None,
     is_proper: npt.NDArray[np.bool_],
     count: int,
@@ -220,20 +219,17 @@ def _checked_places(
 
 
 def _groups(
-    labels: npt.ArrayLike | None,
-    face_labels: npt.ArrayLike | None,
+    labels: tuple[npt.ArrayLike, npt.ArrayLike] | None,
     count: int,
     is_proper: npt.NDArray[np.bool_],
 ) -> tuple[list[tuple[Integers64, Integers64]], Integers64]:
     """Return groups of fine points with allowed triangles; and triangle labels, -1 for none."""
-    if (labels is None) != (face_labels is None):
-        raise ValueError("labels and face_labels go together: give both or none of them")
     label_of = np.where(is_proper, 0, -1).astype(np.int64)
     wanted = np.zeros(count, dtype=np.int64)
     names = np.zeros(1, dtype=np.int64)
-    if labels is not None and face_labels is not None:
-        fine = _checked_labels("labels", labels, count)
-        coarse = _checked_labels("face_labels", face_labels, len(is_proper))
+    if labels is not None:
+        fine = _checked_labels("labels[0]", labels[0], count)
+        coarse = _checked_labels("labels[1]", labels[1], len(is_proper))
         names, numbers = np.unique(np.concatenate([fine, coarse]), return_inverse=True)
         numbers = numbers.reshape(-1)
         wanted = numbers[:count]
