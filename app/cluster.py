@@ -61,7 +61,7 @@ def _client(distributed: Any, scheduler: str) -> Any:
         why = getattr(error, "strerror", None) or error or "it does not speak Dask's protocol"
         raise UserError(
             f"--scheduler {scheduler}: no Dask scheduler answers there ({why}); "
-            "write the address that it prints at its start, as in tcp://host:8786"
+            "write the address that it prints at its start, such as tcp://host:8786"
         ) from None
 
 

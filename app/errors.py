@@ -41,7 +41,7 @@ def line_for(error: Exception) -> str | None:
     from risorius import assets, render  # slow, and not needed without errors
 
     if isinstance(error, MemoryError):
-        return "there is not enough memory for this; take a smaller size"
+        return "there is not enough memory for this; choose a smaller size"
     if isinstance(error, UserError | render.GLError | assets.AssetError | OSError):
         return in_one_line(error)
     return None

@@ -91,7 +91,7 @@ def check_light_map(path: Path) -> None:
     Only the header is read, so no memory is reserved for pixels.
     """
     if path.suffix.lower() not in LIGHT_SUFFIXES:
-        raise UserError(f"{path}: is no map of light; give a file {' or '.join(LIGHT_SUFFIXES)}")
+        raise UserError(f"{path}: is not a light map; give a file {' or '.join(LIGHT_SUFFIXES)}")
     header = _content(path, first=2**16)
     with _refused(path):
         if _is_openexr(path):
@@ -101,7 +101,7 @@ def check_light_map(path: Path) -> None:
     longest = 32767  # [pixels] in a line of a Radiance file
     if not 0 < width <= longest or abs(width - 2 * height) > 0.02 * width:
         raise UserError(
-            f"{path}: has {width} x {height} pixels; a map of light from all around "
+            f"{path}: has {width} x {height} pixels; a light map "
             f"(equirectangular) is twice as wide as high, and at most {longest} pixels wide"
         )
 
@@ -112,7 +112,7 @@ def _is_openexr(path: Path) -> bool:
 
 def _content(path: Path, first: int | None = None) -> bytes:
     """Return a file's bytes, or only its `first` bytes."""
-    return read_bytes(path, what="map of light", longest=2**28, first=first)
+    return read_bytes(path, what="light map", longest=2**28, first=first)
 
 
 @contextlib.contextmanager
@@ -121,7 +121,7 @@ def _refused(path: Path) -> Iterator[None]:
     try:
         yield
     except (ValueError, IndexError) as error:
-        raise UserError(f"{path}: cannot be read as a map of light: {error}") from None
+        raise UserError(f"{path}: cannot be read as a light map: {error}") from None
 
 
 def _radiance_size(content: bytes) -> tuple[int, int, int]:

@@ -125,7 +125,7 @@ def held_pose(settings: Sequence[str]) -> Script:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise UserError(f"--set {setting}: '{text}' is no number; write NAME=VALUE")
+            raise UserError(f"--set {setting}: '{text}' is not a number; write NAME=VALUE")
         values[name] = value
     title = ", ".join(settings)
     return Script(title, duration=POSE_SECONDS, source="--set", poses=(Pose(0.0, values),))

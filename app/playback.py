@@ -13,7 +13,7 @@ class Playback:
 
     neutral: "first:SECONDS", "percentile" or "none". gains: factors of channels, as "NAME=x".
     mirror: whether to swap left and right. lead: time by which muscles act before the recording
-    [s]; eyes and head in proportion. face, rate: see `read_take`.
+    [s]; eyes and head act earlier in proportion. face, rate: see `read_take`.
     """
 
     neutral: str | None = None

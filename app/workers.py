@@ -59,7 +59,7 @@ class Worker:
         """Begin `work(*arguments, send)`.
 
         threads: number of threads for each of OpenGL, BLAS and refinement; without a limit they
-        take one for each core. log: the file for the output of the process; None: the error stream.
+        use one for each core. log: the file for the output of the process; None: the error stream.
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:

@@ -80,7 +80,7 @@ def coarse_head() -> CoarseHead:
 
 
 def _behind_lids(known: Head, part: Part) -> Part:
-    """Part; an eyeball is made a little smaller, so that straight lid edges do not cut it."""
+    """Return the part; an eyeball is made smaller, so that straight lid edges do not cut it."""
     factor = 0.95  # of the radius
     for eye in known.eyes:
         if part.name == f"eyeball_{eye.name}":

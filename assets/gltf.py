@@ -252,7 +252,7 @@ class _Reader:
         """Return points moved by bones, (V, 3), a fingerprint of each point's bones, (V,), and
         the linear parts of the motions, (V, 3, 3).
 
-        unbent: points moved by the node's matrix `world` alone, for points without a bone.
+        unbent: points moved only by the node's matrix `world`, for points without a bone.
         """
         bones = self._document.skins[skin]
         motions = np.array([self._worlds[joint] for joint in bones.joints])

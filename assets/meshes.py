@@ -141,7 +141,7 @@ def _broken_files_named() -> Iterator[None]:
     except Exception as error:
         reason = " ".join(f"{type(error).__name__}: {error}".split())[-200:]
         raise AssetError(
-            f"broken, or not what its name says ({reason}); open it in a modelling program, "
+            f"broken, or named as another format ({reason}); open it in a modelling program, "
             "triangulate it and save it anew"
         ) from None
 
@@ -173,7 +173,7 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
 
 def _read_by_trimesh(content: bytes, suffix: str) -> tuple[Any, Any]:
     """Vertices and triangles of a file whose name ends in "stl" or "off"."""
-    import trimesh  # which to load a head takes no time for
+    import trimesh  # imported late, so that loading a head is fast
 
     logging.getLogger("trimesh").disabled = True
     blank_lines = re.compile(rb"\n\s*\n")

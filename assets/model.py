@@ -27,7 +27,7 @@ from .nostrils import lit_nostrils
 from .topology import quarter
 
 GLASSES = "glasses"  # the name of the part
-MASK = "mask"  # likewise
+MASK = "mask"  # the name of the part
 
 
 class Segment(IntEnum):

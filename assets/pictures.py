@@ -122,7 +122,7 @@ def decoded(content: bytes, name: str) -> Image:
 
     name: for messages. Raises AssetError for a broken or too large picture, or another format.
     """
-    import PIL.Image  # which to load a head takes no time for
+    import PIL.Image  # imported late, so that loading a head is fast
 
     if content.startswith(KTX2):
         return _basis_picture(content, name)

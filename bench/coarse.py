@@ -137,9 +137,9 @@ def _angles_and_areas(
 
 
 def search(
-    comparison: Comparison, start: Layout, say: Callable[[str], None], rounds: int = 3
+    comparison: Comparison, start: Layout, on_flip: Callable[[str], None], rounds: int = 3
 ) -> Layout:
-    """Flip edges of FREE_GROUPS that lower the angle by LEAST_GAIN; `say` reports each flip."""
+    """Flip edges of FREE_GROUPS that lower the angle by LEAST_GAIN; `on_flip` gets a line."""
     known = coarse_head()
     fine = assets.load("head")
     outward = vertex_normals(fine.vertices, fine.faces)[known.file_vertices]
@@ -156,7 +156,7 @@ def search(
             angle = comparison.angles(tried)["face"]
             if angle < best - LEAST_GAIN:
                 ends = known.file_vertices[[first, second]]
-                say(f"edge {ends[0]}-{ends[1]}: {best:.3f} -> {angle:.3f} degrees")
+                on_flip(f"edge {ends[0]}-{ends[1]}: {best:.3f} -> {angle:.3f} degrees")
                 best = angle
                 present = tried
         if best == before:

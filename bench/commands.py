@@ -10,7 +10,7 @@ from risorius.app.cli.value_types import FiniteRange, Size
 from risorius.app.errors import UserError
 from risorius.app.text import in_one_line
 
-from .report import conclude, say_progress
+from .report import conclude, print_progress
 
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
@@ -74,14 +74,14 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: st
         if refiner != "kahler":
             raise UserError(f"--{pairs} needs --refiner kahler; leave one of the two out")
         if pairs == "threads":
-            found = compared.by_threads(sizes, seconds, say_progress)
+            found = compared.by_threads(sizes, seconds, print_progress)
             click.echo(compared.report_of_threads(found))
         else:
-            found = compared.by_matrix(sizes, seconds, say_progress)
+            found = compared.by_matrix(sizes, seconds, print_progress)
             click.echo(compared.report_of_matrix(found))
         return
     on_card = refiner == "kahler-gl"
-    rows = refine.measure(sizes or refine.SIZES, seconds, say_progress, on_card=on_card)
+    rows = refine.measure(sizes or refine.SIZES, seconds, print_progress, on_card=on_card)
     click.echo(refine.report(rows))
 
 
@@ -130,7 +130,7 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
         if name not in known:
             raise UserError(f"--expression {in_one_line(name)}: there are {', '.join(known)}")
     subject = subjects.built_in() if scans is None else subjects.scanned(scans)
-    scores = quality.measure(subject, expressions, say_progress)
+    scores = quality.measure(subject, expressions, print_progress)
     conclude(quality.report(scores), quality.targets(scores))
 
 
@@ -158,7 +158,7 @@ def bench_rivals(reference: Path | None, seconds: float) -> None:
     methods, skipped = rivals.available()
     rows = []
     for case in rivals.cases(heads):
-        say_progress(case.surface)
+        print_progress(case.surface)
         found, refused = rivals.measure(case, methods, seconds)
         rows += found
         skipped += refused
@@ -192,7 +192,7 @@ def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
             click.echo(f"without --{name} its head is left out", err=True)
     rows = []
     for row in avatar.measure(makehuman, reference):
-        say_progress(row.name)
+        print_progress(row.name)
         rows.append(row)
     conclude(avatar.report(rows, guesses.persons_turned()), avatar.targets(rows))
 

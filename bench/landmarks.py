@@ -45,7 +45,7 @@ DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
 RIGHT = {*range(8), *range(17, 22), 31, 32, *range(36, 42), 48, 49, 50, 58, 59, 60, 61, 67}
 MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures
 MOST_CONSTANT = 1.5  # percent, of any point
-MOST_YAW = 10.0  # [degrees] of frontal pictures
+MOST_YAW = 10.0  # [degrees]; heads of frontal pictures turn less
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def _dlib(model: Path | None) -> Detector:
     try:
         predictor = dlib.shape_predictor(str(file))
     except RuntimeError as error:
-        raise UserError(f"{file}: is no shape predictor of dlib: {error}") from None
+        raise UserError(f"{file}: is not a shape predictor of dlib: {error}") from None
     faces = dlib.get_frontal_face_detector()
     larger = 1  # number of times that a picture is enlarged to twice its size, for small faces
 

@@ -121,5 +121,5 @@ def _landmarks(readme: Path) -> Integers32:
     """The 68 landmarks as vertex indices, from the checkout's README."""
     found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:
-        raise UserError(f"{readme}: names no 68 landmarks; that of ICT-FaceKit does")
+        raise UserError(f"{readme}: has no list of 68 landmarks; use a checkout of ICT-FaceKit")
     return np.array(found[0].split(","), dtype=np.int32)

@@ -198,7 +198,7 @@ def _card_cases(load: Load) -> list[_Case]:
     for title, options in RULES.items():
         card = refine.create("kahler-gl", load.faces, load.rest, **options)
         if not isinstance(card, KahlerGl):
-            raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` says more")
+            raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` shows more")
         own = own_context()
         room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
         buffers = own.run(GpuBuffers, own.gl, *room)
@@ -283,7 +283,7 @@ def report(found: Sequence[Row]) -> str:
     if any(row.method.startswith("kahler-gl") for row in found):
         own = own_context()
         card = str(own.run(own.gl.info.__getitem__, "GL_RENDERER"))
-        kind = "software, which is no card: its times mean nothing" if is_software(card) else "card"
+        kind = "software, not a card: its times mean nothing" if is_software(card) else "card"
         lines.append(f"kahler-gl: on {card} ({kind})")
     for mesh, group in groupby(found, key=lambda row: row.mesh):
         rows = list(group)

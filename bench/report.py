@@ -60,7 +60,7 @@ def conclude(text: str, targets: Iterable[Target]) -> None:
         sys.exit(1)
 
 
-def say_progress(name: str) -> None:
+def print_progress(name: str) -> None:
     """Print the name of the current step to the error stream, if the stream is a terminal."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)

@@ -82,7 +82,7 @@ def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], 
             look(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
     except (OSError, RuntimeError, ValueError) as error:
         raise UserError(
-            f"{model}: is no model of MediaPipe's face landmarker, which is called "
+            f"{model}: is not a model of MediaPipe's face landmarker, which is called "
             f"face_landmarker.task: {error}"
         ) from None
     with contextlib.closing(landmarker):  # an open landmarker fails when Python exits
@@ -146,8 +146,8 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
         if not side:
             yield name, (name,)
         elif side == "Left":
-            is_way = stem in ("jaw", "mouth")  # jawLeft is a direction
-            title = f"{name}, Right" if is_way else stem
+            is_direction = stem in ("jaw", "mouth")  # jawLeft is a direction
+            title = f"{name}, Right" if is_direction else stem
             yield title, (name, twin_of(name))
 
 

@@ -194,7 +194,7 @@ def main() -> None:
     command.add_argument("photographs", type=Path, nargs="?", help="a folder of pictures")
     command.add_argument("--epochs", type=int, default=24)
     command.add_argument("--plain", action="store_true", help="do not vary the pictures")
-    command.add_argument("--jaw-on-bone", action="store_true", help="as the rig has the jaw")
+    command.add_argument("--jaw-on-bone", action="store_true", help="use the rig's jaw landmarks")
     given = command.parse_args()
     torch.manual_seed(1)
     faces = Faces(given.set)

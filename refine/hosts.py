@@ -147,7 +147,7 @@ class WeldedRefiner:
 
 def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.NDArray[Any]:
     """Return weighted means of three rows each, (M, 3), of a table of numbers of any type."""
-    if table.dtype.kind == "c":  # as pairs: infinity times a complex share is NaN
+    if table.dtype.kind == "c":  # as two floats: infinity times a complex is NaN
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
         return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
     corners = table[rows]

@@ -21,7 +21,7 @@ LEAST_VERSION = 430
 
 
 class GpuError(RuntimeError):
-    """OpenGL cannot refine: the message says if it is missing, too old, or too small."""
+    """OpenGL cannot refine: the message reports whether it is missing, too old, or too small."""
 
 
 class OwnContext:

@@ -12,7 +12,7 @@ from .style import Background, MapBackground
 
 _MAP_UNIT = 4  # texture unit while a map is painted
 
-# A viewport, the part of it that is painted, and the vertical field of view of maps [deg], else 0.
+# A viewport, its painted part, and the vertical field of view of a map [deg], 0 for a gradient.
 _Area = tuple[Rectangle, Rectangle, float]
 
 

@@ -8,9 +8,9 @@ is `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the 
 
 Numba reads its folder from `numba.config.CACHE_DIR` once, when it decorates a function. The
 variable is set only during this call, so kernels of other packages in the process keep their
-folder. If no folder belongs to this user alone, code is compiled in each process, and one line in
+folder. If no folder belongs only to this user, code is compiled in each process, and one line in
 the log reports this. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly, for debuggers and
-coverage. Fast-math is off unless a kernel asks for it, so results do not depend on the
+coverage. Fast-math is off unless a kernel needs it, so results do not depend on the
 vectorisation of a loop.
 
 This file does not depend on the code that it compiles. A copy of `refine/` also needs this file.

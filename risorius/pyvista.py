@@ -43,7 +43,7 @@ class PolyDataRefiner:
         ----------
         frame : pyvista.PolyData | array_like
             The mesh of the frame, with the same cells as at rest; its data go into the result. Or
-            its points alone, shape `(n_points, 3)`; then the data of the mesh at rest are used.
+            only its points, shape `(n_points, 3)`; then the data of the mesh at rest are used.
         view : risorius.refine.View, optional
             The viewpoint, for the criterion `silhouette`.
 

@@ -48,7 +48,7 @@ MUST_BE = {
     "too_long": "a list of {max_length}",
     "tuple_type": "a list",
 }
-LENIENT = "unknown keys are passed by"  # for files of other versions
+LENIENT = "unknown keys are ignored"  # for files of other versions
 OWN = "("  # readers add keys that begin with this; no file has them
 REST = f"{OWN}rest)"
 HIDDEN = f"{OWN}hidden)"

@@ -39,7 +39,7 @@ class LipPairs(NamedTuple):
     beside: Integers32  # (P, 2) ends of an edge-like segment of the other lip
     weight: Floats64  # (P,) of the first end
     below: Floats64  # (P,) 1 for a vertex of the lower lip, -1 for one of the upper
-    least_gap: Floats64  # (P,) mm, vertical; small negative where lips overlap at rest
+    least_gap: Floats64  # (P,) mm, vertical; slightly negative where lips overlap at rest
     seal: Floats64  # (P,) stiffness
     averaging: Floats64  # (P,) 1 / the number of pairs that share its vertices
     members: Integers32  # (M,) all vertices in pairs

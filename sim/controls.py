@@ -89,7 +89,7 @@ class Controls:
         self.actions = MappingProxyType({**actions, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
         bounds = np.array([*self.limits.values()], np.float64).reshape(-1, 2)
-        slack = 1e-6  # beyond a limit by rounding is not an error
+        slack = 1e-6  # a value beyond a limit by less is a rounding error
         self._least = bounds[:, 0] - slack
         self._most = bounds[:, 1] + slack
         self._low, self._high = bounds[: len(controls)].T.copy()

@@ -2,7 +2,7 @@
 
 A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Skin is attached to the fibre by arc
 length t in 0..1. At contraction c, the point at t moves to where the point at t (1 - c) was: skin
-slides along the fibre towards the origin. A muscle whose origin is no bone (frontalis: the scalp)
+slides along the fibre towards the origin. A muscle whose origin is the scalp (frontalis)
 is fixed at t = f instead, and both ends slide towards it: t moves to f + (t - f)(1 - c). A table
 holds the displacements at SAMPLES points along every fibre; each tick rewrites it. The skin, and
 muscles that lie on the fibre, read the table by linear interpolation.
@@ -67,7 +67,7 @@ def gate_at(gate: Gate, lateral: float, lip_side: float) -> float:
     if gate.lip != 0.0:
         # Value of the lip side field beyond which a gated muscle does not move the other lip.
         gate_ends = -0.6
-        gate_full = 1.0  # value of full hold; without a fade in between, corners get square
+        gate_full = 1.0  # value of full hold; without a fade below it, mouth corners get square
         t = (gate.lip * lip_side - gate_ends) / (gate_full - gate_ends)
         t = min(max(t, 0.0), 1.0)
         found *= t * t * (3.0 - 2.0 * t)
@@ -156,7 +156,7 @@ class FibreHold(NamedTuple):
     """How firmly points are attached to a fibre, and how they move when it contracts."""
 
     width: float  # mm across the fibre, of a Gaussian
-    beyond: float  # mm past its end, likewise
+    beyond: float  # mm past its end, of a Gaussian
     weight: float
     drawn: float  # how far a place at its end moves towards the fibre line, as a share
     bulge: float  # mm along the normal, of a Gaussian along the fibre

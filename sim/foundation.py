@@ -170,7 +170,7 @@ def mesh_of(what: str, given: Any) -> tuple[Floats64, Integers32]:
     largest_coordinate = 1e9
     if (np.abs(vertices) > largest_coordinate).any():
         raise ValueError(
-            f"{what}.vertices: some are beyond {largest_coordinate:g}; take another unit of length"
+            f"{what}.vertices: some exceed {largest_coordinate:g}; choose another unit of length"
         )
     if len(vertices) == 0:
         raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")

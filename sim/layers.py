@@ -197,7 +197,7 @@ class _Reader:
                 f"'{row.share_of}'{question(row.share_of, self.weights)}"
             )
         if row.mirror is not None and (row.pair or row.mirror == name):
-            allowed = "another name, in a row that is no pair"
+            allowed = "another name, in a row that is not a pair"
             raise ValueError(f"{where}, 'mirror': was '{row.mirror}', must be {allowed}")
         if row.pair:
             for side in (*SIDES, *ENDINGS["Left Right"]):

@@ -15,7 +15,7 @@ that the brow can come down on it. A closed upper lid is held twice as firmly, b
 presses it down; so a rising brow does not open it. A closing lid slides towards the nose, where its
 ring of fibres is fixed. A raised lid slides a little away from the nose. Both lids follow the gaze
 a little to the side, because the cornea draws them. The lids of each eye follow the gaze of that
-eye alone. The turn fades from the margin to the edge of the lid. The turn moves the far ends of the
+eye only. The turn fades from the margin to the edge of the lid. The turn moves the far ends of the
 tissue springs instead of the skin, so skin still slides and is still kept off the eyeball.
 lid_fold.py has the motion of the skin above the upper lid.
 
@@ -313,7 +313,7 @@ def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flag
 
 def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
     """Return how far closed lids overlap [rad], from the opening of the eye there."""
-    wide_opening = 0.3  # rad: from this opening on they are pressed in full
+    wide_opening = 0.3  # rad: lids of a wider opening are pressed fully
     most_turn = 0.11  # rad (1.4 mm)
     width = (opening - least_opening) / (wide_opening - least_opening)
     return most_turn * smoothstep(width)

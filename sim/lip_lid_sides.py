@@ -41,7 +41,7 @@ def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
     lower = _distance(surface, landmarks, (lower_outer, lower_inner))
     lid_reach = 14.0  # mm from the lid landmarks
     near = np.minimum(upper, lower) < lid_reach
-    certain_distance = 3.0  # mm by which one lid must be nearer; it is less at the corners alone
+    certain_distance = 3.0  # mm by which one lid must be nearer; it is less only at the corners
     balance = (lower - upper) / np.maximum(
         np.abs(lower - upper).max(where=near, initial=certain_distance), certain_distance
     )

@@ -269,7 +269,7 @@ def _check_carriers(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
         if name not in muscles:
             raise ValueError(f"{where}: there is no muscle '{name}'{question(name, muscles)}")
         if isinstance(muscles[name], LidMuscle):
-            raise ValueError(f"{where}: '{name}' is a lid, which carries nothing; take it out")
+            raise ValueError(f"{where}: '{name}' is a lid, which carries nothing; remove it")
     _refuse_circle(muscles, (muscle.name,))
 
 
@@ -278,7 +278,7 @@ def _refuse_circle(muscles: Mapping[str, Muscle], path: tuple[str, ...]) -> None
     for name in muscles[path[-1]].lies_on:
         if name == path[0]:
             circle = " on ".join((*path, name))
-            raise ValueError(f"'{name}', 'lies_on': {circle} is a circle; take one out")
+            raise ValueError(f"'{name}', 'lies_on': {circle} is a circle; remove one")
         if name in muscles and name not in path:
             _refuse_circle(muscles, (*path, name))
 

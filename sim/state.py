@@ -23,7 +23,7 @@ class State(NamedTuple):
     x: Floats64  # (V, 3) positions
     v: Floats64  # (V, 3) velocities
     carried: Floats64  # (V, 3) rest carried by bones and lids: far ends of the tissue springs
-    normals: Floats64  # (V, 3) tissue directions, carried likewise
+    normals: Floats64  # (V, 3) tissue directions, carried by the same bones
     hold: Floats64  # (V,) stiffness of muscles and lids
     pull: Floats64  # (V, 3) force of active muscles
     offset: Floats64  # (V, 3) x - carried

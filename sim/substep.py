@@ -35,7 +35,7 @@ from .state import State
 from .teeth import Teeth
 from .tissue import EdgeSprings, TissueSprings
 
-LONGEST_FRAME = 1.0 / 20.0  # s, the longest `dt` a caller may ask for
+LONGEST_FRAME = 1.0 / 20.0  # s, the longest allowed `dt`
 # s: all skin is 24 % heavier than its own mass; 1/360 s gives 14 % and costs a fifth more
 LONGEST_SUBSTEP = 1.0 / 300.0
 ROUNDING = 0.02  # parts: a caller's 0.0167 for 1/60 s is still one tick, not two
@@ -44,7 +44,7 @@ SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forwa
 
 def ticks_in(dt: float) -> int:
     """Number of ticks in a frame of `dt` [s]."""
-    longest_tick = 1.0 / 60.0  # s: half of it is no more exact, because a tick uses its middle
+    longest_tick = 1.0 / 60.0  # s: shorter ticks gain nothing, because a tick uses its middle
     return parts(dt, longest_tick)
 
 
@@ -303,7 +303,7 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
     shift = mandible.shift
     arch = teeth.arch
     tooth_fade = 3.0  # mm above and below the teeth over which their contact fades
-    least_ratio = 0.1  # share of an arch's radius: nearer to the axis the way out is ambiguous
+    least_ratio = 0.1  # share of an arch's radius: nearer to the axis, outward is ambiguous
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         width = arch[c, 0]

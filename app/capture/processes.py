@@ -69,7 +69,7 @@ def drawing(
         except DiedError as why:
             raise UserError(
                 f"a process that draws the film ended ({why}); try again; if memory is "
-                "short, take a smaller --size"
+                "short, choose a smaller --size"
             ) from None
         if frame is not None:
             shown[:] = [frame]

@@ -136,7 +136,7 @@ def _check(
             )
         if not 0.0 <= begin < end <= script.duration:
             raise UserError(
-                f"--time {begin:g}:{end:g}: take two times from 0 to {script.duration:g} s, "
+                f"--time {begin:g}:{end:g}: give two times from 0 to {script.duration:g} s, "
                 "the earlier one first"
             )
     if isinstance(options.camera, str):
@@ -144,7 +144,7 @@ def _check(
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     if sheet and not script.key_poses:
-        raise UserError(f"{script.source}: no pose has a name; --sheet draws named poses alone")
+        raise UserError(f"{script.source}: no pose has a name; --sheet draws only named poses")
     if sheet is not None:
         check_png(sheet)
     if output is not None:

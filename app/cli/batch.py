@@ -148,7 +148,7 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
 def _listed(name: str) -> click.Command:
     """Return the command of this name; raise UserError if a list may not hold it."""
     if name not in LISTED:
-        raise UserError(f"'{name}' is no command of a list; allowed are {', '.join(LISTED)}")
+        raise UserError(f"'{name}' is not a command of a list; allowed are {', '.join(LISTED)}")
     parent = click.get_current_context().parent
     assert parent is not None and isinstance(parent.command, click.Group)
     return parent.command.commands[name]

@@ -33,7 +33,7 @@ class Filming:
         type=FiniteRange(1, 240),
         default=30.0,
         show_default=True,
-        help="Frames per second, as 25 or 30000/1001.",
+        help="Frames per second, such as 25 or 30000/1001.",
     )
     compare: str | None = option(
         is_flag=False,
@@ -54,8 +54,8 @@ class Filming:
     background: render.Background | str | None = option(
         type=BackgroundName(),
         default="light",
-        help="light, dark, white, black, a colour as #00b140 or grey, transparent, or map: the map "
-        "that lights the scene, out of focus.",
+        help="light, dark, white, black, a colour such as #00b140 or grey, transparent, or map: "
+        "the light map of the scene, out of focus.",
     )
     passes: str | None = option(
         metavar="NAME,...",

@@ -301,7 +301,7 @@ def controls(scene: str) -> None:
 
 
 @click.command()
-@click.option("--offscreen", is_flag=True, help="Examine offscreen OpenGL alone.")
+@click.option("--offscreen", is_flag=True, help="Examine only offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Print nothing; only set the exit code.")
 def doctor(offscreen: bool, quiet: bool) -> None:
     """Report which commands work here, and how to enable the others.

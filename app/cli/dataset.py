@@ -55,7 +55,7 @@ from .value_types import PATH, Size
 @click.option(
     "--background",
     metavar="COLOUR|FOLDER",
-    help="A colour, as '#8090a0' or grey, or a folder of pictures; by default soft colours.",
+    help="A colour, such as '#8090a0' or grey, or a folder of pictures; by default soft colours.",
 )
 @click.option(
     "--light",
@@ -102,7 +102,7 @@ def dataset(
     """Make pictures of faces with exact labels.
 
     Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose. A
-    sample depends on --seed and its number alone, not on the process that makes it.
+    sample depends only on --seed and its number, not on the process that makes it.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of

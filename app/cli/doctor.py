@@ -57,7 +57,7 @@ class Health(enum.IntEnum):
 def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     """Return the state of this installation, and the lines of the report.
 
-    offscreen_only: test and report offscreen frames alone.
+    offscreen_only: test and report only offscreen frames.
     """
     found = {finding.name: finding for finding in render.probe(offscreen_only=offscreen_only)}
     system = f"{platform.system()} {platform.machine()}"
@@ -102,7 +102,7 @@ def _card(findings: list[render.Finding]) -> str:
 
 def _names() -> list[str]:
     """Return lines with the names that options of refinement accept."""
-    from risorius import refine  # slow, and not needed for offscreen frames alone
+    from risorius import refine  # slow, and not needed for offscreen frames
 
     known: dict[str, refine.Registry[Any]] = {
         "refiners": refine.refiners,

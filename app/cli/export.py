@@ -34,7 +34,7 @@ class Exporting:
         type=FiniteRange(1, 240),
         default=30.0,
         show_default=True,
-        help="Frames per second, as 25 or 30000/1001.",
+        help="Frames per second, such as 25 or 30000/1001.",
     )
     refined: bool = option(
         is_flag=True,
@@ -53,7 +53,7 @@ class Exporting:
     )
     named_only: bool = option(
         is_flag=True,
-        help="Write glTF with ARKit's shapes alone, without residual targets; errors are "
+        help="Write glTF with only ARKit's shapes, without residual targets; errors are "
         "millimetres.",
     )
     overwrite: bool = option(

@@ -177,7 +177,7 @@ class Drawing(Subject):
 
     light: Path | None = option(
         type=PATH,
-        help="A map of the light from all directions, .hdr or .exr, twice as wide as high. Its "
+        help="A light map (.hdr or .exr), twice as wide as high. Its "
         "middle lies behind the head. --style light=NAME chooses a built-in one.",
     )
 
@@ -185,7 +185,7 @@ class Drawing(Subject):
     def style_options(self) -> dict[str, Any]:
         """The settings of --style by name, with the path of --light as `light`.
 
-        Raises UserError for unknown words, and for a file that is no map of light.
+        Raises UserError for unknown words, and for a file that is not a light map.
         """
         settings = style_in(self.style_settings)
         if self.light is None:

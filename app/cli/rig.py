@@ -135,7 +135,7 @@ def _take_of(rigging: Rigging, kinds: tuple[str, ...]) -> Script | None:
         return built_in_words()
     script, _ = read_performance(rigging.take)
     if script.scene != "face":
-        raise UserError(f"{rigging.take}: is for the scene '{script.scene}'; take one for a face")
+        raise UserError(f"{rigging.take}: is for the scene '{script.scene}'; choose one for a face")
     return script
 
 

@@ -38,7 +38,7 @@ class Size(click.ParamType[tuple[int, int]]):
             if all(LEAST_SIDE <= side <= LONGEST_SIDE for side in size):
                 return size
         self.fail(
-            f"'{value}' is no size; write width x height, each {LEAST_SIDE} to {LONGEST_SIDE}, "
+            f"'{value}' is not a size; write width x height, each {LEAST_SIDE} to {LONGEST_SIDE}, "
             "as in 1280x720"
         )
 
@@ -49,7 +49,7 @@ MAP_BACKGROUND = "map"
 class BackgroundName(click.ParamType["render.Background | str | None"]):
     """The background of the scene, by name or as a colour; None is transparent.
 
-    The word "map" is returned as it is, because other options choose the map of light.
+    The word "map" is returned as it is, because other options choose the light map.
     """
 
     name = "COLOUR"
@@ -74,8 +74,8 @@ class BackgroundName(click.ParamType["render.Background | str | None"]):
             red, green, blue = (part / 255.0 for part in PIL.ImageColor.getrgb(word)[:3])
         except ValueError:
             self.fail(
-                f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
-                "transparent, or a colour as #00b140 or grey"
+                f"'{value}' is not a background; write {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
+                "transparent, or a colour such as #00b140 or grey"
             )
         return render.Background((red, green, blue), (red, green, blue))
 
@@ -96,7 +96,7 @@ class Times(click.ParamType[tuple[float, ...]]):
         except ValueError:
             times = ()
         if len(times) not in (1, 2) or not all(0.0 <= each <= 86_400.0 for each in times):
-            self.fail(f"'{value}' is no time [s]; write it as 2.5, or FROM:TO as 1:2.5", param, ctx)
+            self.fail(f"'{value}' is not a time [s]; write 2.5, or 1:2.5 for a part", param, ctx)
         return times
 
 
@@ -137,6 +137,6 @@ class HeadName(click.ParamType["Path | int | str"]):
         path: Path = PATH.convert(value, param, ctx)
         if not path.suffix and not path.exists():
             known = ", ".join(HEAD_NAMES)
-            allowed = f"take {known}, the number of a person, or a mesh file as anna.obj"
-            self.fail(f"'{value}' is no head; {allowed}", param, ctx)
+            allowed = f"give {known}, the number of a person, or a mesh such as anna.obj"
+            self.fail(f"'{value}' is not a head; {allowed}", param, ctx)
         return path

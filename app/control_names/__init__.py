@@ -65,7 +65,7 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
     for name, value in values.items():
         base, side = parted(name)
         twin = twin_of(name)
-        is_direction = not side and parted(twin)[0] != name  # as AU61 and AU62
+        is_direction = not side and parted(twin)[0] != name  # such as AU61 and AU62
         if is_direction or base in OPPOSITE or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
@@ -80,7 +80,7 @@ def readable(name: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """Capitalize a text, unless it begins with a code or a file name, as "a.b: opened"."""
+    """Capitalize a text, unless it begins with a code or a file name, such as "a.b: opened"."""
     name, colon, _ = text.partition(":")
     is_plain = text.partition(" ")[0].islower() and not (colon and "." in name)
     return text[:1].upper() + text[1:] if is_plain else text

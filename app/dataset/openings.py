@@ -1,6 +1,6 @@
 """Measure the visible openings of mouth and eyes: the heights of the gaps between lips or lids.
 
-Distances between landmarks are no measure: pressed lips roll inward, and shut lids lie on each
+Distances between landmarks do not measure them: pressed lips roll inward, and shut lids lie on each
 other, but landmarks on their edges stay millimetres apart.
 """
 

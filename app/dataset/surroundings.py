@@ -62,7 +62,7 @@ class Backgrounds:
     def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
         """Return the name of a random picture, and a random part of it, sRGB, (H, W, 3), uint8.
 
-        size: width and height of this part [pixels]. A file that is no picture raises UserError.
+        size: width and height of this part [pixels]. A file that is not a picture raises UserError.
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
         # `fraction` is the visible part of the picture's limiting side, at least 0.6.
@@ -223,7 +223,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         red, green, blue = PIL.ImageColor.getrgb(text)[:3]
     except ValueError:
         raise UserError(
-            f"--background {text}: neither a folder nor a colour, as in '#8090a0' or grey"
+            f"--background {text}: neither a folder nor a colour, such as '#8090a0' or grey"
         ) from None
     return Backgrounds((red / 255.0, green / 255.0, blue / 255.0))
 

@@ -103,7 +103,7 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         if all(each.name != "splits" for each in refine.parameters(name)):
             raise UserError(
                 f"--refined: the triangles of refiner {name} change, and it has no option splits; "
-                "take another --refiner, or add --changing for USD, OBJ and VTKHDF"
+                "choose another --refiner, or add --changing for USD, OBJ and VTKHDF"
             )
         refiner = clip.refiner(refinement, splits)
     with reported(plug_ins):

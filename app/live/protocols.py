@@ -87,7 +87,7 @@ def resolved(address: str) -> str:
         reason = getattr(error, "strerror", None) or error
         raise UserError(
             f"address {in_one_line(repr(address))}: {reason}; write a computer's name, or its "
-            "address as 192.168.1.20"
+            "address, such as 192.168.1.20"
         ) from None
 
 

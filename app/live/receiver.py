@@ -108,6 +108,6 @@ def _bound_socket(listening: Listening) -> socket.socket:
         raise UserError(
             f"cannot listen on {address}, port {port}: {error.strerror}; close the program that "
             f"listens there, choose another --port, or another --address ({LOOPBACK} for this "
-            f"computer alone, {ANYWHERE} for its whole network)"
+            f"computer only, {ANYWHERE} for its whole network)"
         ) from None
     return opened

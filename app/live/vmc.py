@@ -44,7 +44,7 @@ Quaternion = tuple[float, float, float, float]  # x, y, z, w
 
 
 def parse(packet: bytes) -> LiveFrame | None:
-    """Return the channels that a packet adds to a frame; None if it is no packet of VMC."""
+    """Return the channels that a packet adds to a frame; None if it is not a packet of VMC."""
     channels: dict[str, float] = {}
     bones: dict[str, Quaternion] = {}
     has_values = is_applied = False

@@ -39,7 +39,7 @@ def solved(
     in `Controls.sums` and `Clip.activations`. controls: values that were set, shape (N,) each. Set
     values of this layer are kept, and the solution explains only the remaining activations.
 
-    A control with sides (AU12) is returned as its sides alone (AU12_left, AU12_right). Raises
+    A control with sides (AU12) is returned as only its sides (AU12_left, AU12_right). Raises
     UserError for a scene without muscles, or without the layer.
     """
     names = sided(scene, layer)
@@ -65,14 +65,14 @@ def sided(scene: Scene, layer: str) -> tuple[str, ...]:
     """
     names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
-        raise UserError(f"{layer}: this head has no such controls; take the built-in head")
+        raise UserError(f"{layer}: this head has no such controls; use the built-in head")
     return tuple(name for name in names if name + SIDES[0] not in names)
 
 
 def _muscles_of(scene: Scene, layer: str) -> Controls:
     """Return the controls of a scene's muscles; raise UserError if the scene has no muscles."""
     if scene.face is None:
-        raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
+        raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; use the scene face")
     return scene.face.simulation.controls
 
 

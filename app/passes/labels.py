@@ -49,7 +49,7 @@ def labels_of(
 
     depth: depth map of the picture, (H, W), for landmarks; None leaves landmarks out. covered:
     flags of pixels where a mask hides landmarks, (H, W); None: no mask. `docs/passes.md` describes
-    the keys. A scene without a face has labels for camera and controls alone.
+    the keys. A scene without a face has labels only for camera and controls.
     """
     placed = CameraLabels.from_camera(camera, size)
     labels: dict[str, Any] = {
@@ -167,7 +167,7 @@ def check_wanted(wanted: Sequence[str], scene: str) -> None:
     """Raise UserError for unknown passes, and for passes that the scene or a library lacks."""
     for name in wanted:
         if name not in NAMES:
-            raise UserError(f"--passes: '{name}' is no pass; allowed are {', '.join(NAMES)}")
+            raise UserError(f"--passes: '{name}' is not a pass; allowed are {', '.join(NAMES)}")
         if name in OF_FACES and scene != "face":
             raise UserError(
                 f"--passes {name}: the scene {scene} has no face; allowed are "

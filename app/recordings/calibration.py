@@ -80,7 +80,7 @@ def calibration_for(
     """Return the calibration of a take; its kind determines neutral face and gains by default.
 
     neutral: "first:SECONDS", "percentile" or "none". gains: factors as "NAME=x", where NAME may be
-    a pattern as mouth*. Raises UserError for any other value.
+    a pattern such as mouth*. Raises UserError for any other value.
     """
     own, default = gains_of(gains, take.channels, kind=take.kind)
     return Calibration(neutral_of(take, neutral), own, default, mirror)
@@ -134,7 +134,7 @@ def _seconds_in(method: str) -> float:
     except ValueError:
         seconds = math.nan
     if not 0.0 <= seconds < math.inf:
-        raise UserError(f"--neutral {method}: '{text}' is no time; write first:1 for one second")
+        raise UserError(f"--neutral {method}: '{text}' is not a time; write first:1 for one second")
     return seconds
 
 
@@ -163,7 +163,7 @@ def gains_of(
         if not fitting and not _fitting(ARKIT, name):
             raise UserError(
                 f"--gain {setting}: no channel of this recording is called '{name}'; "
-                "write a channel's name, a pattern as mouth*, or all"
+                "write a channel's name, a pattern such as mouth*, or all"
             )
         gains.update(dict.fromkeys(fitting, value))
     return gains, default

@@ -40,8 +40,8 @@ ARKIT = (
 )  # fmt: skip
 """The 52 shapes in ARKit's order, which packets without names use."""
 
-NONSENSE = 3.0  # a larger shape is no measurement
-LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement
+NONSENSE = 3.0  # a larger value is an error
+LARGEST_ANGLE = 360.0  # [degrees]; a larger one is an error
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
 ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))

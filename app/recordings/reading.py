@@ -100,7 +100,7 @@ def is_recording(path: Path) -> bool:
 def _strange(names: tuple[str, ...]) -> str:
     """Describe a file of an unknown kind, for an error text."""
     if len(names) < 2:
-        return "is no table and no JSON"
+        return "is neither a table nor JSON"
     listed = ", ".join(f"'{name}'" for name in names[:4])
     return f"is a table of which no column is known ({listed}, ...)"
 

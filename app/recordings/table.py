@@ -26,7 +26,7 @@ from ..errors import UserError
 from ..text import counted
 from .take import TakeRequest
 
-LARGEST = 1e30  # a larger number is no measurement; nanoseconds since 1970 are 1.8e18
+LARGEST = 1e30  # a larger number is an error; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
 MOST_LISTED = 8  # faces that a message lists
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
@@ -170,7 +170,7 @@ def header_of(text: str) -> tuple[str, ...]:
 def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
     """Return the names in the first row; () if it is not a header."""
     names = tuple(cell.strip() for cell in _cells_of(header, layout))
-    longest_name = 80  # [characters] of a column's name; a longer one is no header
+    longest_name = 80  # [characters] of a column's name; a longer one is not a name
     is_header = all(len(name) <= longest_name for name in names) and any(
         re.search(r"[^\W\d]", name) for name in names
     )
@@ -211,7 +211,7 @@ def table_in(text: str, *, source: str) -> Table:
 
 
 def repeated_columns(names: Sequence[str]) -> list[str]:
-    """Return a sentence on columns with equal names; OpenFace's `x_0` and `X_0` differ."""
+    """Return a note on columns with equal names; case counts: OpenFace has `x_0` and `X_0`."""
     counts = Counter(name for name in names if name)
     repeated = [name for name, count in counts.items() if count > 1]
     if not repeated:

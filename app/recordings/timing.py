@@ -103,7 +103,7 @@ def stamp_of(name: str) -> Stamp | None:
         stem = letters.removesuffix(spelled)
         if stem == letters:
             continue
-        if not stem:  # "ms" and "seconds" alone are times, "s" may be anything
+        if not stem:  # whole names "ms" and "seconds" are times, "s" may be anything
             return (
                 Stamp(len(stamp_names), unit)
                 if spelled in ("ms", "seconds", "milliseconds")
@@ -187,7 +187,7 @@ def find_times(
             return times
         has_stamps = True
     if rate is None and written_rate is not None:
-        notes.append(f"{written_rate:g} frames a second, as the file says.")
+        notes.append(f"{written_rate:g} frames a second, from the file.")
     frame = next((numbers(name) for name in names if is_frame(name)), None)
     return frame_times(frame, count, rate or written_rate, notes, has_stamps=has_stamps)
 
@@ -238,7 +238,7 @@ def stamp_times(
     if len(stamps) == 1:
         return None
     if not np.isfinite(stamps).any():
-        notes.append("The time stamps are no numbers, and were not used.")
+        notes.append("The time stamps are not numbers, and were not used.")
         return None
     stamps = spread(stamps, notes)
     if not mostly_rises(stamps):

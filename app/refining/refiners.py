@@ -161,7 +161,7 @@ def _takes_own_schemes(refiner: str) -> bool:
 def _outlines(scene: Drawable) -> list[list[int]]:
     """Return the rims of nostrils, outlines from below, of the built-in head and of persons.
 
-    The first vertex of a rim is the outermost. It lies in a fold, so its edges are no outline.
+    The first vertex of a rim is the outermost. It lies in a fold, so its edges are not an outline.
     """
     if scene.face is None or not isinstance(scene.face.head, assets.Head | Person):
         return []
@@ -204,7 +204,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
     for setting in settings:
         name, equals, text = setting.partition("=")
         if not (name and equals and text):
-            raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
+            raise UserError(f"--option {setting}: write NAME=VALUE, such as scheme=cubic")
         options[name] = _value(text)
         value = options[name]
         if isinstance(value, int | float) and not -largest_number <= value <= largest_number:

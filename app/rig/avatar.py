@@ -104,18 +104,18 @@ class Avatar:
         return {"correctives": rules} if rules else {}
 
 
-Say = Callable[[str], None]
+Report = Callable[[str], None]
 
 
-def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
+def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> Avatar:
     """Make the avatar of a head; None is the built-in head.
 
-    The avatar of a head from a file includes all pieces of this file. `say` is called with lines
+    The avatar of a head from a file includes all pieces of this file. `report` is called with lines
     about the avatar.
     """
     file = None
     if head is not None and head.files:
-        file = file_head(head, request, say)
+        file = file_head(head, request, report)
         head = file.head
     scene = build_face(head)
     eyes_are_nodes = request.has_eye_nodes(is_gltf=file is not None and file.painted is None)
@@ -144,14 +144,14 @@ def avatar_of(head: FittedHead | None, request: RigRequest, say: Say) -> Avatar:
             pairs = worth_correcting(scene, poses, count, progress=request.progress)
         poses.update(corrective_poses(scene, pairs))
         names = tuple(poses)
-        say(
+        report(
             f"correctives: {', '.join(names[len(names) - len(pairs) :]) or 'none reduces an error'}"
         )
     sums = table(scene, poses, pairs)
     if take is not None:
         sums.append(difference_on(take, scene, poses, pairs))
     for difference in sums:
-        say(f"error of a sum of shapes: {difference}")
+        report(f"error of a sum of shapes: {difference}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
     return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
 
@@ -160,7 +160,7 @@ def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str
     return corrected_shapes(shaped, pairs, names) if pairs else shaped
 
 
-def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
+def file_head(head: FittedHead, request: RigRequest, report: Report) -> FileHead:
     """Read the file of a fitted head, and find its pieces.
 
     Raises AssetError for unusable files, and UserError for wrong options.
@@ -193,11 +193,11 @@ def file_head(head: FittedHead, request: RigRequest, say: Say) -> FileHead:
         head = replace(head, parts=parts, simplified=simplified)
     body = FileBody(mesh, head, pieces, eyes_are_nodes=request.has_eye_nodes(is_gltf=is_gltf))
     how = "simulated" if head.simplified is None else "following a simplified mesh"
-    say(f"skin: {len(head.vertices)} of {len(rest)} vertices, {how}")
+    report(f"skin: {len(head.vertices)} of {len(rest)} vertices, {how}")
     if len(body.in_bag):
-        say(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
+        report(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
     for line in described(pieces):
-        say(line)
+        report(line)
     return FileHead(head, body, tuple(pieces), painted, stored, path)
 
 

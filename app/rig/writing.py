@@ -13,7 +13,7 @@ from risorius.assets.gltf_file import GltfFile
 from risorius.geometry.arrays import Floats64
 
 from ..files import folder_atomically, written_atomically
-from .avatar import Avatar, FileHead, RigRequest, Say, avatar_of
+from .avatar import Avatar, FileHead, Report, RigRequest, avatar_of
 from .bodies import EYES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
@@ -45,10 +45,10 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
     return len(content), len(read_document(content, Path())[0]["meshes"])
 
 
-def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, say: Say) -> None:
+def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, report: Report) -> None:
     """Make the avatar of a head, and write it; None is the built-in head."""
     title = head.files[0].stem if head is not None and head.files else output.stem
-    write_avatar(avatar_of(head, request, say), output, title, is_folder=False)
+    write_avatar(avatar_of(head, request, report), output, title, is_folder=False)
 
 
 def avatar_glb(avatar: Avatar, title: str) -> bytes:

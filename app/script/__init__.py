@@ -216,7 +216,7 @@ class Script:
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
-        """All controls that the script moves: first the controls of poses, then of tracks alone."""
+        """All controls that the script moves: those of poses, then those of tracks only."""
         return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
 
     @functools.cached_property

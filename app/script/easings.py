@@ -38,7 +38,7 @@ class Easing(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The word for the easing, or its slopes as "0.5,2"."""
+        """The word for the easing, or its slopes, such as "0.5,2"."""
         return _WORDS.get(self) or free_easing(*self.slopes)
 
     def progress(self, fraction: float) -> float:
@@ -55,7 +55,7 @@ EASINGS = {
     "ease-out": Easing(20, 0),  # starts at speed, arrives softly
     "hold": Easing(0, 0, True),
 }
-ALLOWED = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, as '0.5,2'"
+ALLOWED = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, such as '0.5,2'"
 _WORDS = {easing: name for name, easing in EASINGS.items()}
 
 
@@ -78,7 +78,7 @@ def shares_of(fractions: Floats64, rows: Unsigned8) -> Floats64:
 
 
 def free_easing(start: float, end: float) -> str:
-    """Return the possible slopes that are nearest to these [mean speeds], as "0.5,2"."""
+    """Return the possible slopes that are nearest to these [mean speeds], such as "0.5,2"."""
     most = STEEPEST_TENTHS / 10
     return ",".join(f"{min(max(0.0, round(slope, 1)), most):g}" for slope in (start, end))
 

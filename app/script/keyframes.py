@@ -154,8 +154,8 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     """Add a key, so that the script has these values at `time` [s].
 
     The key is a pose: the values minus the values of the tracks. If a pose cannot reach a value
-    (a track closes an eye that shall be open), the track also gets a key. In a script of tracks
-    alone, such as a recording, the tracks that differ get keys, or all tracks if none differs.
+    (a track closes an eye that shall be open), the track also gets a key. In a script without
+    poses, such as a recording, the tracks that differ get keys, or all tracks if none differs.
     """
     time = rounded(time)
     plain = script.posed(time)

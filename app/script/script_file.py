@@ -196,7 +196,7 @@ def script_text(script: Script, folder: Path | None = None) -> str:
         sound = _as_seen_from(folder, script.sound)
         if as_text(sound) != sound:
             raise UserError(
-                f"{script.sound}: a script cannot name this sound, because its path is no UTF-8; "
+                f"{script.sound}: a script cannot name this sound, because its path is not UTF-8; "
                 "rename it"
             )
         head.append(f"sound = {_quoted(sound)}")

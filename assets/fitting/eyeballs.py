@@ -39,7 +39,7 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
 def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:
     """Fit a sphere to points (n, 3); return its centre and its radius [mm].
 
-    If the points are no ball near the given sphere, the given centre and radius are returned. The
+    If the points form no ball near the given sphere, its centre and radius are returned. The
     fit is linear: least squares of |p|^2 = 2 p c + (r^2 - |c|^2).
     """
     local = points - centre
@@ -63,7 +63,7 @@ def ball_of_pieces(
     """Find centre and radius [mm] of the largest eyeball among pieces (n, 3), or None.
 
     centre, radius: an estimate. lids: landmarks of the eye [mm], (6, 3); a ball that protrudes
-    between them is no eyeball.
+    between them is not an eyeball.
     """
     found = None
     for points in pieces:

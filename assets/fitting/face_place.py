@@ -19,7 +19,7 @@ ORIENTING = slice(17, COUNT)  # without the jaw line, on which annotators differ
 def placed(points: Floats64, known: Head) -> Similarity:
     """Find the similarity from landmarks (68, 3) to the face space [mm].
 
-    Raises AssetError if the landmarks are no face, are mirrored, or are in a wrong order.
+    Raises AssetError if the landmarks form no face, are mirrored, or are in a wrong order.
     """
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
@@ -34,13 +34,13 @@ def placed(points: Floats64, known: Head) -> Similarity:
     disordered = groups_in_disorder(similarity.points(points), template)
     farthest_from_a_face = 14.0  # [mm]; greatest mean distance from the built-in landmarks
     is_far = off[ORIENTING].mean() > farthest_from_a_face
-    most_disordered = 3  # groups; if more are in a wrong order, the landmarks are no face
+    most_disordered = 3  # groups; if more are in a wrong order, the landmarks form no face
     if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
     if is_far:
         raise AssetError(
-            f"the landmarks are no face: they are {off[ORIENTING].mean():.0f} mm off on average, "
+            f"the landmarks form no face: they are {off[ORIENTING].mean():.0f} mm off on average, "
             f"and landmark {off.argmax()} by {off.max():.0f} mm; give the 68 iBug points in their "
             "order"
         )

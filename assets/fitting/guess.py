@@ -85,7 +85,7 @@ def placing(known: Known) -> Similarity:
             if less.mean() <= most_mean_distance and not other.is_mirrored:
                 raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
         raise AssetError(
-            f"these points are no face: they are {off.mean():.0f} mm off on average, and landmark "
+            f"these points form no face: they are {off.mean():.0f} mm off on average, and landmark "
             f"{sorted(known)[int(off.argmax())]} by {off.max():.0f} mm; give each its own place"
         )
     if similarity.is_mirrored:

@@ -98,7 +98,7 @@ class FittedHead(simplifying.SimulatedHead):
     lip_cut: LipCut | None = field(default=None, kw_only=True)
 
     def fade(self) -> Floats32 | None:
-        """Return the result of `neck_fade`, (V, 2), which says how the skin fades at the neck."""
+        """Return the result of `neck_fade`, (V, 2): how the skin fades at the neck."""
         return neck_fade(self.vertices, self.faces, self.landmarks)
 
 

@@ -274,9 +274,9 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
-    least_difference = 3.0  # [mm] between points in both orders; less is no clear difference
+    least_difference = 3.0  # [mm] between points in both orders; less decides nothing
     is_clear = size > 0.5 * group.count * least_difference**2
-    disordered_correlation = -0.3  # well below 0, so that the right order passes
+    disordered_correlation = -0.3  # clearly below 0: noise in a right order is no proof
     return is_clear and float((given * moved).sum()) < disordered_correlation * size
 
 

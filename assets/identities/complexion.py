@@ -347,7 +347,7 @@ def _tints() -> _Tints:
     is_skin = (hair < 0.02).astype(np.float32)
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
     detail_size = 9  # [texels]; finer changes of lightness count as relief
-    # Beside hair the mean counts skin alone, or skin between dark hairs would look raised.
+    # Beside hair the mean counts only skin, or skin between dark hairs would look raised.
     around, skin_fraction = (
         scipy.ndimage.uniform_filter(each, detail_size) for each in (lightness, is_skin)
     )

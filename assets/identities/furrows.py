@@ -70,7 +70,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         depth = deepest * random.uniform(0.65, 1.0) * whole * reach * shown
         if random.random() < 0.25 + 0.5 * lines.broken:
             gap = random.uniform(-20.0, 20.0)
-            over = random.uniform(2.0, 8.0)  # [mm] over which both halves overlap
+            over = random.uniform(2.0, 8.0)  # [mm] of overlap of both halves
             step = random.choice([-1.0, 1.0]) * random.uniform(0.15, 0.26) * spread
             left = smooth_step(gap + over, gap - 5.0, x)
             right = smooth_step(gap - over, gap + 5.0, x)

@@ -15,7 +15,7 @@ import click
 from risorius import __version__
 from risorius.app.text import in_one_line
 
-from ..report import processor, say_progress, table
+from ..report import print_progress, processor, table
 from .experiments import EXPERIMENTS, Result
 
 PATH = click.Path(path_type=Path)
@@ -47,7 +47,7 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
         check_file(folder / name)
     results = []
     for experiment in chosen:
-        say_progress(experiment.title)
+        print_progress(experiment.title)
         results.append(experiment.run(rounds=rounds))
     for result in results:
         if result.outcome.picture is not None:

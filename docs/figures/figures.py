@@ -80,7 +80,7 @@ def run(about: str | None, figures: Mapping[str, Figure]) -> None:
     """Draw the figures of the command line; mistakes give one line, and signals end the program."""
     parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
-    parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")
+    parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="only these figures")
     given = parser.parse_args()
     handle_signals()
     with report_user_errors():

@@ -92,7 +92,7 @@ def _normals_of_sectors(sectors: Sectors, faces: Unsigned32, positions: Floats64
 def _diagonal(positions: Floats64) -> float:
     """Diagonal of the box around the ends of edges, shape (E, 2, 3); 1 if it has no size.
 
-    Points that no triangle uses do not count: they are no part of the mesh.
+    Points that no triangle uses do not count: they are not a part of the mesh.
     """
     sides = np.ptp(positions, axis=(0, 1)) if len(positions) else np.zeros(3)
     size = float(np.linalg.norm(sides))

@@ -50,7 +50,7 @@ class Measuring(Criterion):
 
 
 class Maximum(Criterion):
-    """A combination of several criteria: an edge is split as often as any of them asks."""
+    """A combination of several criteria: an edge is split as often as any of them requires."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:

@@ -64,7 +64,7 @@ def create_kahler(
       split once or twice, for the paper's criterion, "normal".
     - `criterion`: "normal", "rest", "silhouette", "displacement", another name of
       `refine.criteria`, an object, or a list of these; each edge is split as often as any of
-      them asks. "normal+rest" is such a list.
+      them requires. "normal+rest" is such a list.
     - `splits`: 0, 1 or 2 for every edge, shape (E,), in place of a criterion: all frames have the
       same vertices and triangles (`splits_of_clip`).
     - `scheme`: "loop", the paper's, "cubic", another name of `refine.schemes`, or an object such as

@@ -224,7 +224,7 @@ class BaseRefiner(Refiner):
             _owners[id(thing)] = self
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
-        """Raise ValueError unless the arrays are large enough; the last ones pass quickly."""
+        """Raise ValueError unless the arrays are large enough; unchanged arrays pass quickly."""
         try:
             vertices = stream.vertices
             triangles = stream.triangles

@@ -126,7 +126,7 @@ def _input_faces(refiner: Refiner) -> Integers64:
 
 
 def _rounded(origins: Origins) -> _Places:
-    """Round weights to whole parts; raises BrokenMeshError if they are no weights."""
+    """Round weights to whole parts; raises BrokenMeshError if they are not weights."""
     _require_all(
         abs(origins.weights.sum(axis=1, dtype=np.float64) - 1.0) < 1e-5,
         "origins have weights that add up to one",
@@ -143,7 +143,7 @@ def _rounded(origins: Origins) -> _Places:
 
 def _number_places(places: _Places, mesh: RefinedMesh) -> Integers64:
     """Give equal places on the input mesh the same number, shape (N,)."""
-    # A point inside a triangle belongs to it alone, even if another triangle has the same corners.
+    # A point inside a triangle belongs only to it, even if another triangle has the same corners.
     is_inside = (places.parts > 0).all(axis=1)
     source = np.full(len(mesh.positions), -1, dtype=np.int64)
     source[mesh.triangles] = mesh.source[:, None]

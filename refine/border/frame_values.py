@@ -75,6 +75,6 @@ def refuse(given: FrameValuesLike | None) -> None:
 def _unknown(name: str, bound: list[str]) -> str:
     there_are = f"bound are {bound}" if bound else "no attribute was bound"
     return (
-        f"values[{name!r}] is no attribute of this refiner; {there_are}; bind it by "
+        f"values[{name!r}] is not an attribute of this refiner; {there_are}; bind it by "
         f"attributes={{{name!r}: values at rest}}"
     )

@@ -66,7 +66,7 @@ class Origins(NamedTuple):
     """Place of every output vertex on the undeformed input mesh.
 
     Output vertex n is the mix of input vertices `vertices[n]` with `weights[n]`, before smoothing.
-    Any other attribute is mixed likewise: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
+    Mix any other attribute equally: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
     """
 
     vertices: npt.NDArray[np.int32]

@@ -4,7 +4,7 @@ Kähler, Haber, Seidel 2003, section 4.1, determine splits in every frame, so ve
 of the output change. Many file formats, and programs that keep data at vertices, need the same
 vertices and triangles in every frame. `splits_of_clip` finds, for each edge, the most splits that
 any frame of a clip needs. The result is still adaptive, and never coarser than a frame that is
-refined alone.
+refined separately.
 
 With a criterion that never changes, `Criterion.is_constant`, a refiner decides, numbers points and
 looks triangles up once (`Kahler`). A frame only places points.

@@ -123,7 +123,7 @@ class LoopScheme(Scheme):
             return
         if frame is not self._frame:
             self._frame = frame
-            self._tuples = frame[:], self._around[:], self._rings[:]  # plain: sooner handed over
+            self._tuples = frame[:], self._around[:], self._rings[:]  # plain: passed faster
         if self._kept is not None:
             place_kept(*self._tuples, self._kept[:], self._inside_count, self._edge_points)
             return

@@ -205,7 +205,7 @@ def _wedges(
     vertex_first[used] = used_first
     number, first = _originals_first(number, first, vertices[first], vertex_first)
     wedge_vertices = np.concatenate([np.arange(vertex_count), vertices[first[vertex_count:]]])
-    uv_or_none = np.append(corner_uv.ravel(), -1)  # first use -1 (never used) reads the -1
+    uv_or_none = np.append(corner_uv.ravel(), -1)  # a first use of -1 (never used) reads this -1
     return number.reshape(faces.shape), wedge_vertices, uv_or_none[first]
 
 

@@ -56,7 +56,7 @@ def checked_mesh(
     if size != 0.0 and not least <= size <= most:
         raise ValueError(
             f"{name} must extend over {least:g} to {most:g} (or lie all at one place), but "
-            f"extend over {size:g}; take another unit of length, at binding and in all frames"
+            f"extend over {size:g}; choose another unit of length, at binding and in all frames"
         )
     checked[~is_good] = checked[is_used.argmax()] if is_used.any() else 0.0
     return checked, triangles
@@ -82,7 +82,7 @@ def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
     try:
         array = np.asarray(given)
     except ValueError as error:  # this is numpy's error for rows of unequal length
-        raise ValueError(f"{name} must be {wanted}, but is no array: {error}") from None
+        raise ValueError(f"{name} must be {wanted}, but is not an array: {error}") from None
     if np.ma.is_masked(given):
         raise ValueError(f"{name} must be {wanted}, but has masked entries; fill them first")
     return array

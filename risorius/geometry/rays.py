@@ -71,7 +71,7 @@ def _touch(one: Integers32, other: Integers32) -> bool:
 @njit
 def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
     """Whether a segment cuts a triangle (3, 3), as `crossings` finds it."""
-    margin = 1e-6  # relative; contact at a corner or an edge is no cut
+    margin = 1e-6  # relative; contact at a corner or an edge is not a cut
     dx = end[0] - start[0]
     dy = end[1] - start[1]
     dz = end[2] - start[2]

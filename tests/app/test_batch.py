@@ -110,12 +110,12 @@ def test_every_wrong_line_is_reported_and_nothing_is_done():
     ended = batch()
     lines = ended.stderr.splitlines()
     words = (
-        (1, "'320x' is no size"),
+        (1, "'320x' is not a size"),
         (2, "quotation mark"),
         (3, "is written by line 9"),
         (4, "a.mp4: is written by line 3"),
         (5, "allowed are capture, export, convert"),
-        (6, "'risorius' is no command"),
+        (6, "'risorius' is not a command"),
         (7, "nothere.toml: there is no such file"),
         (8, "writes no file"),
         (10, "not empty"),

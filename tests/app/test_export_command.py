@@ -71,7 +71,7 @@ def test_every_format_is_written_and_leaves_nothing_else(name, folder):
 
 def test_curves_need_muscles():
     """Curves of a face are written; for a plane, which has no muscles, one line refuses them."""
-    assert "take the scene face" in refusal(export("plane.toml", "-o", "x.csv"))
+    assert "use the scene face" in refusal(export("plane.toml", "-o", "x.csv"))
     assert not Path("x.csv").exists()
     result = export("face.toml", "-o", "x.csv")
     assert result.exit_code == 0

@@ -85,15 +85,15 @@ def test_openexr_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("sky.png", b"", "is no map of light; give a file .hdr or .exr"),
-        ("sky.hdr", b"nothing", "cannot be read as a map of light"),
-        ("sky.hdr", HEAD + b"\2\2\0\x40" + b"\xff", "cannot be read as a map of light"),
+        ("sky.png", b"", "is not a light map; give a file .hdr or .exr"),
+        ("sky.hdr", b"nothing", "cannot be read as a light map"),
+        ("sky.hdr", HEAD + b"\2\2\0\x40" + b"\xff", "cannot be read as a light map"),
         ("sky.hdr", HEAD.replace(b"64", b"32") + bytes(32 * 32 * 4), "has 32 x 32 pixels"),
         ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 32767 +X 65534"), "at most 32767 pixels wide"),
         ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 99999 +X 65535"), "has 65535 x 99999 pixels"),
         ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 0 +X 0"), "has 0 x 0 pixels"),
         ("sky.hdr", HEAD + bytes(64 * 32 * 4), "is black"),
-        ("sky.exr", b"nothing", "cannot be read as a map of light"),
+        ("sky.exr", b"nothing", "cannot be read as a light map"),
     ],
 )
 def test_others_are_refused_in_one_line(tmp_path, name, content, message):
@@ -192,7 +192,7 @@ def test_every_map_of_a_folder_is_checked(tmp_path):
     """The header of every map in a folder is checked before any sample is drawn."""
     write_map(tmp_path / "a.hdr")
     (tmp_path / "b.hdr").write_bytes(b"nothing")
-    with pytest.raises(UserError, match=r"b\.hdr: cannot be read as a map of light"):
+    with pytest.raises(UserError, match=r"b\.hdr: cannot be read as a light map"):
         surroundings.light_files_of(tmp_path)
 
 

@@ -124,7 +124,7 @@ def test_a_dropped_map_lights_the_scene(desk, tmp_path):
     [
         (None, "no such file"),
         (b"#?RADIANCE\n\n-Y 32 +X 32\n", "is twice as wide as high"),
-        (HEAD + b"zz", "cannot be read as a map of light: it is shorter than its size requires"),
+        (HEAD + b"zz", "cannot be read as a light map: it is shorter than its size requires"),
     ],
 )
 def test_a_broken_map_is_one_line(desk, tmp_path, content, line):

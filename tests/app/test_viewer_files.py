@@ -173,7 +173,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
         session.note()
         put(viewer, landmarks)
         assert viewer.messages.is_error
-        assert "has landmarks alone" in viewer.messages.text
+        assert "has only landmarks" in viewer.messages.text
         put(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text)
         assert len(session.scene.faces) > len(before.faces)

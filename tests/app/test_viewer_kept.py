@@ -115,7 +115,7 @@ def test_an_unreadable_settings_file_is_reported(path, content):
             {"display": {"options": {"kahler": {"threshold_once": "x"}}}},
             "threshold_once was x, must be a number",
         ),
-        ({"display": {"light": "/nowhere/room.hdr"}}, "/nowhere/room.hdr: no such map of light"),
+        ({"display": {"light": "/nowhere/room.hdr"}}, "/nowhere/room.hdr: no such light map"),
     ],
 )
 def test_no_settings_prevent_the_window_from_opening(path, wrong, fault):

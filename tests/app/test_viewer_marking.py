@@ -154,7 +154,7 @@ def test_vertex_indices_can_be_corrected(marking, tmp_path):
     assert not marking.marks.guessed
     wrong = Marking(marking.path, FileDialogs())
     numbers.write_text(json.dumps({"landmarks": np.roll(user_head().landmarks, 20).tolist()}))
-    with pytest.raises(UserError, match=r"\.json: these points are no face"):
+    with pytest.raises(UserError, match=r"\.json: these points form no face"):
         wrong.open(numbers)
     assert not wrong.marks.places
     assert wrong.file is None

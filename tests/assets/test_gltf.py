@@ -390,8 +390,8 @@ def _circle(maker):
         (_lost, "its buffer head data.bin: no such buffer file"),
         (_old, "is glTF 1.0; export it as glTF 2.0"),
         (_huge, "an accessor of 10000000000 rows; allowed are"),
-        (_beyond, "broken, or not what its name says"),
-        (_circle, "broken, or not what its name says"),
+        (_beyond, "broken, or named as another format"),
+        (_circle, "broken, or named as another format"),
     ],
 )
 def test_unreadable_content_is_named(maker, tmp_path, change, message):

@@ -133,8 +133,8 @@ def _endless(maker):
 @pytest.mark.parametrize(
     ("make", "change", "message"),
     [
-        (compressed_by_meshopt, _broken, "broken, or not what its name says"),
-        (compressed_by_draco, _broken, "broken, or not what its name says"),
+        (compressed_by_meshopt, _broken, "broken, or named as another format"),
+        (compressed_by_draco, _broken, "broken, or named as another format"),
         (compressed_by_meshopt, _endless, "more than 400 MB of data that are compressed"),
     ],
 )

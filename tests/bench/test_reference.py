@@ -100,7 +100,7 @@ def test_bench_quality_runs_on_it(checkout):
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
-        (lambda folder: (folder / "README.md").unlink(), "names no 68 landmarks"),
+        (lambda folder: (folder / "README.md").unlink(), "has no list of 68 landmarks"),
         (
             lambda folder: (folder / "FaceXModel/jawOpen.obj").write_text("v 0 0 0\nf 1 1 1\n"),
             "jawOpen has other vertices than the neutral head",

@@ -72,7 +72,7 @@ def test_a_file_without_model_is_named(tmp_path, content):
     result = risorius("bench", "seen", "--model", tmp_path / "other.task")
     assert result.exit_code == 2
     (line,) = result.stderr.splitlines()
-    assert "other.task: is no model of MediaPipe's face landmarker" in line
+    assert "other.task: is not a model of MediaPipe's face landmarker" in line
 
 
 @needs_model

@@ -65,7 +65,7 @@ REFUSED = {
     "bench window --size 9x9": "each 16 to 8192",
     # Live faces.
     "view --live vmc --scene plane": "moves the scene 'face'",
-    "send good.toml": "is no table and no JSON",
+    "send good.toml": "is neither a table nor JSON",
     # Cameras.
     f"{IMAGE} --camera behind": "camera 'behind': allowed are",
     f"{IMAGE} --camera 0,0,0": "zoom above 0",
@@ -89,7 +89,7 @@ REFUSED = {
     "capture --head head.obj -o x.png": "needs a landmark file",
     "view --script nowhere.toml": "no such script",
     # Poses.
-    "capture --set joy=nan -o x.png": "'nan' is no number",
+    "capture --set joy=nan -o x.png": "'nan' is not a number",
     "capture --set joy=2 -o x.png": "must be from 0 to 1",
     "capture --set Joy=1 -o x.png": "unknown name 'Joy'; did you mean joy",
     # Outputs.
@@ -108,15 +108,15 @@ REFUSED = {
     "bench quality --expression nobody": "--expression nobody: there are joy, ",
     # Values refused by other parts of the program.
     "capture --compare good.toml -o x.mp4": "a SCRIPT goes before --compare",
-    "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
+    "capture good.toml -o x.mp4 --size ²x²": "'²x²' is not a size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
     "capture --scene plane -o x.mp4 --background transparent": "a film cannot be transparent",
     "capture --background map -o x.png": "--background map: no map lights the scene; add --light",
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.
-    "capture --head nobody -o x.png": "'nobody' is no head; take ada, kofi, maria, coarse, the num",
-    "rig Coarse -o x.glb": "'Coarse' is no head; take ada",
+    "capture --head nobody -o x.png": "'nobody' is not a head; give ada, kofi, maria, coarse, the",
+    "rig Coarse -o x.glb": "'Coarse' is not a head; give ada",
     "capture --head 3 --landmarks marks.json -o x.png": "--head 3: its landmarks are known",
     "capture --head 3 --scene plane -o x.png": "--head needs the scene face",
     # Recordings.
@@ -128,7 +128,7 @@ REFUSED = {
     "capture good.toml --passes depth -o x.mp4": "--passes are files beside each picture: give -o ",
     "capture good.toml --passes depth --compare -o x.png": "--passes and --compare exclude each",
     "capture --scene plane --passes depth,landmarks -o x.png": "the scene plane has no face; ",
-    "dataset --count 2 -o set --passes colour": "'colour' is no pass",
+    "dataset --count 2 -o set --passes colour": "'colour' is not a pass",
     "dataset --count 2 -o set --background 'no such'": "neither a folder nor a colour",
     "dataset --count 2 -o set --background broken": "face.png: cannot be read as a picture",
     "dataset --count 2 -o set --sample nowhere.toml": "no such table",

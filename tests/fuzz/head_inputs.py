@@ -22,7 +22,7 @@ HEAD = assets.load("head")
 NUMBERS = HEAD.landmarks.tolist()
 POINTS = HEAD.vertices[HEAD.landmarks].tolist()
 BACK = int(np.argmin(HEAD.vertices[:, 2]))
-BROKEN = "broken, or not what its name says|holds no triangles"
+BROKEN = "broken, or named as another format|holds no triangles"
 WRONG_KIND = "all landmarks must be vertex indices, or all must be points"
 
 
@@ -131,7 +131,7 @@ MARKS: dict[str, tuple[Any, Kind | str]] = {
     "mixed": (_with(POINTS, 67, 5), f"'landmark 67': was 5, .*{WRONG_KIND}"),
     "point at 1e8": (_with(POINTS, 8, [1e8, 0.0, 0.0]), "landmark 8 lies 1e.08 units off the mesh"),
     "mouth corners alike": (_with(NUMBERS, 54, NUMBERS[48]), "landmarks 48 and 54 are 0 mm apart"),
-    "other order": (NUMBERS[::-1], "head.obj: (the landmarks are no face|left and right)"),
+    "other order": (NUMBERS[::-1], "head.obj: (the landmarks form no face|left and right)"),
 }
 HEADS: dict[str, tuple[Callable[[], bytes], Kind | str]] = {
     "in micrometres": (partial(_obj, scale=1e3), Kind.HEAD),

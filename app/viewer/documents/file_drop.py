@@ -1,4 +1,4 @@
-"""Files dropped onto the window: a script, pose or recording, a sound, a head, a map of light."""
+"""Files dropped onto the window: a script, pose or recording, a sound, a head, a light map."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
             kind = "landmarks"
         if kind in found:
             names = f"{found[kind].name}, {path.name}"
-            raise UserError(f"{names}: one of them is enough; drop it alone")
+            raise UserError(f"{names}: one of them is enough; drop only that one")
         found[kind] = path
     return found
 
@@ -103,7 +103,7 @@ class FileDrop:
         self._making: dict[str, Making] = {}  # by kind of file, at most one mesh and one light
 
     def open(self, paths: Sequence[str]) -> Message:
-        """Open files, or begin to read a map of light or to make a head."""
+        """Open files, or begin to read a light map or to make a head."""
         gone = next((path for path in paths if not Path(path).exists()), None)
         if gone is not None:
             raise UserError(f"{gone}: no such file")
@@ -113,7 +113,7 @@ class FileDrop:
         landmarks = found.pop("landmarks", None)
         if mesh is None and landmarks is not None:
             raise UserError(
-                f"{landmarks.name}: has landmarks alone; drop it together with its mesh, "
+                f"{landmarks.name}: has only landmarks; drop it together with its mesh, "
                 "such as an .obj"
             )
         if light is not None:
@@ -142,7 +142,7 @@ class FileDrop:
 
     @property
     def is_making(self) -> bool:
-        """Whether a thread makes a head or reads a map of light."""
+        """Whether a thread makes a head or reads a light map."""
         return bool(self._making)
 
     @property
@@ -197,13 +197,13 @@ class FileDrop:
         return self._scripts.set_sound(found["sound"]) if "sound" in found else line
 
     def ask_light(self) -> None:
-        """Ask for a map of light, and light the scene by it."""
+        """Ask for a light map, and light the scene by it."""
 
         def go_on(path: Path) -> Message:
             """Open the map."""
             return self.open([str(path)])
 
-        self._files.open("Open map of light", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
+        self._files.open("Open light map", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
 
     def ask_head(self) -> None:
         """Ask for a mesh; show it with the landmark file beside it, or else open its marking."""

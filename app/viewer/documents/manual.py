@@ -101,7 +101,7 @@ def pages() -> dict[str, str]:
     """
     folder = _folder()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.glob("**/*.md"))]
-    is_left_out = ("reference/", "gallery")  # pages for the site alone, and the page of pictures
+    is_left_out = ("reference/", "gallery")  # pages only for the site, and the page of pictures
     present = [name for name in names if not name.startswith(is_left_out)]
     start = (folder / "index.md").read_text(encoding="utf-8")
     linked = re.findall(r"\]\(([\w/]+\.md)", start)

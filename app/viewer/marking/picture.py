@@ -35,7 +35,7 @@ class MarkingView(SceneView):
     def fit_scene(self) -> None:
         marking = self._marking
         self.camera = render.OrbitCamera.framing(marking.positions)
-        if marking.is_upright:  # frame the face alone, without hair and shoulders
+        if marking.is_upright:  # frame only the face, without hair and shoulders
             self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
 
     @property

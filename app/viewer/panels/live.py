@@ -18,7 +18,7 @@ from ..interface.gui import colour
 from ..interface.widgets import LabelledRows, hint, muted
 
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
-COMPUTERS = {"this computer alone": LOOPBACK, "the whole network": ANYWHERE}
+COMPUTERS = {"this computer only": LOOPBACK, "the whole network": ANYWHERE}
 HINTS = {
     "Protocol": "of the sender; Live Link Face is an app of an iPhone, "
     "VMC is sent by most programs for avatars",

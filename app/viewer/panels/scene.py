@@ -25,7 +25,7 @@ OTHER_MAP = "Map ..."
 HINTS = {
     "Light": "moves with the camera; the shadow follows the key. Map: a file .hdr or .exr with the "
     "light from all directions",
-    "Background": "theme: of the window's colours; map: the map of light behind the head, of "
+    "Background": "theme: of the window's colours; map: the light map behind the head, of "
     "clouds, room, street or a file",
     "Lens": "the angle of view from top to bottom [degrees]; the face keeps its size. Wide lenses "
     "stand near and make noses large",

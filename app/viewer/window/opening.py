@@ -60,7 +60,7 @@ def without_refused_options(display: Display, scene: Scene) -> str:
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
     """Return the scene at rest, after its first frames ran once to compile their code.
 
-    A map of light is read too.
+    A light map is read too.
     """
     scene = build_scene(script.scene, head)
     script.check(scene.limits)

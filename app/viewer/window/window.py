@@ -157,7 +157,7 @@ class Viewer:
             self.face.life.note_input()
         for _ in self.gui.turns():
             self._draw_gui(is_visible=False)
-        if self.surface.frame_size != self._panels_size:  # no event says so
+        if self.surface.frame_size != self._panels_size:  # no event reports this
             schedule.wake()
             self._draw_gui(is_visible=False)  # so that the picture knows its place
         self._take_results()

@@ -151,7 +151,9 @@ def test_mistakes_are_reported():
     mesh = meshes.tube(6, 4)
     heat = np.zeros((len(mesh.vertices), 1), np.float32)
     plain = refine.create("kahler", mesh.faces, mesh.vertices)
-    with pytest.raises(ValueError, match=r"values\['heat'\] is no attribute .* no attribute was b"):
+    with pytest.raises(
+        ValueError, match=r"values\['heat'\] is not an attribute .* no attribute was"
+    ):
         plain.refine(mesh.vertices, values={"heat": heat})
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, attributes={"heat": heat})
     with pytest.raises(ValueError, match=r"'cold'.* bound are \['heat'\]"):

@@ -120,7 +120,7 @@ NAN[4, 1] = np.nan
         ({"faces": FINE.faces + 1}, r"indices from 0 to 5 into rest_positions, but triangle 4 is"),
         ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
         ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
-        ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is no array"),
+        ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is not an array"),
         ({"faces": [[0, 1, 2**70]]}, "faces must be integers"),
         ({"faces": np.ma.masked_equal(FINE.faces, 3)}, "faces .* has masked entries"),
         ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),

@@ -186,7 +186,7 @@ def test_masked_positions_are_refused():
     nothing_hidden[4, 1] = np.ma.masked
     with pytest.raises(ValueError, match=r"positions must be .* masked entries; fill them"):
         refiner.refine(nothing_hidden)
-    with pytest.raises(ValueError, match=r"positions must be .* is no array"):
+    with pytest.raises(ValueError, match=r"positions must be .* is not an array"):
         refiner.refine([[0.0, 0.0], [1.0]])
 
 

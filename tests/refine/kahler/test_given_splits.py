@@ -199,7 +199,7 @@ def test_a_view_decides_as_well():
         (np.full(12, -1), "but edge 0 has -1"),
         (np.zeros(12), "got float64 of shape .12,."),
         (np.zeros((12, 1), int), "got int64 of shape .12, 1."),
-        ([[1], [1, 2]], "but is no array"),
+        ([[1], [1, 2]], "but is not an array"),
     ],
 )
 def test_mistakes_are_reported(splits, error):
