@@ -51,7 +51,7 @@ class Attachments(NamedTuple):
     rows: Unsigned32  # (owners + 1,)
     vertex: Unsigned32  # (n,)
     weight: Floats64  # (n,) k w A
-    value: Floats64  # (n, 3) steady displacement x k A; or (n,) place along the line
+    value: Floats64  # (n, 3) a muscle's displacement x k A, or (n,) place along a line
 
 
 class SkinAttachments(NamedTuple):

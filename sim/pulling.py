@@ -305,7 +305,7 @@ class _Lasso(NamedTuple):
     gram: Floats64  # (C, C)
     right: Floats64  # (C,)
     price: Floats64  # (C,)
-    changed: Floats64  # (C,) so far
+    changed: Floats64  # (C,) change of each control so far
     low: Floats64  # (C,)
     high: Floats64  # (C,)
 

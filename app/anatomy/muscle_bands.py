@@ -270,7 +270,7 @@ class _Skin:
         out: outward directions of the bands, (b, ROWS, 3), which the triangles face.
         """
         facing = np.broadcast_to(out[:, :, None], points.shape).reshape(-1, 3)
-        other_side = 20.0  # [mm] that a triangle which faces the other way seems farther
+        other_side = 20.0  # [mm] added to the distance of a triangle that faces the other way
         flat = points.reshape(-1, 3)
         near = closest_points(flat, self.x, self._faces, facing, other_side)
         off = flat - near.interpolate(self.x)

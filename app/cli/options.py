@@ -89,8 +89,8 @@ class Subject:
 
     head: Path | int | str | None = option(
         type=HeadName(),
-        help="The head: a triangle mesh of yours; a person, by any number or as ada, kofi or "
-        "maria; or coarse, the built-in head with a quarter of its triangles.",
+        help="The head: a triangle mesh of yours; a person, by any number or name (ada, kofi, "
+        "maria); or coarse, the built-in head with a quarter of its triangles.",
     )
     landmarks: Path | None = option(
         type=PATH,

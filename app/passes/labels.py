@@ -68,7 +68,7 @@ def labels_of(
     cranium = face.bone_transforms()["cranium"]
     rotation = placed.rotation @ cranium[:3, :3]
     to_head = cranium[:3, :3].T
-    # Relative to a head that faces the camera, whose y and z are opposite to the camera's.
+    # Relative to a head that faces the camera: its y and z are opposite to the camera's.
     turned = np.diag([1.0, -1.0, -1.0]) @ rotation
     angles = zip(("yaw", "pitch", "roll"), angles_of(turned), strict=True)
     directions = {side: gaze(face, side) for side in SIDES}

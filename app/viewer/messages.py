@@ -50,7 +50,7 @@ class Messages:
     def age(self, seconds: float) -> None:
         """Count the seconds since the last frame; a line that is not lasting disappears."""
         if not self.stays:
-            # [s] of a frame that count at most, because a longer frame did not display the line.
+            # A longer frame [s] counts as this time, because it did not display the line.
             longest_frame = 0.25
             self.seconds_left -= min(seconds, longest_frame)
         if self.seconds_left <= 0.0:

@@ -47,7 +47,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
-        # Skin that faces the ball is not a lid, but the wall of a socket, which may be too narrow.
+        # Skin that faces the ball is the wall of a socket, not a lid. A socket may be too narrow.
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
         skin = np.vstack([target, fitted.vertices[is_lid]])

@@ -83,7 +83,7 @@ def test_the_verdict_agrees_with_the_parts(machine_without, missing):
     ],
 )
 def test_refinement_on_the_card(able, is_software, message, monkeypatch):
-    """A line reports whether kahler-gl would run, and on which card; its absence is no fault."""
+    """A line reports whether kahler-gl would run, and on which card; its absence is not a fault."""
     findings = [
         render.Finding(name, True, is_software=is_software, lends_gpu_streams=name in able)
         for name in ("offscreen", "window")

@@ -79,7 +79,7 @@ def test_curves_need_muscles():
 
 
 def test_only_a_dense_head_has_a_simplified_mesh():
-    """The built-in head has no simplified mesh: one line says so before anything is written."""
+    """The built-in head has no simplified mesh: one line reports this before any writing."""
     line = refusal(export("face.toml", "-o", "x.npz", "--simplified"))
     assert line.startswith("risorius: --simplified: this mesh is simulated as it is; leave it out")
     assert not Path("x.npz").exists()

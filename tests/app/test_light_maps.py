@@ -259,7 +259,7 @@ def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
 
 @pytest.mark.parametrize("lit", ["file", "name"])
 def test_capture_shows_the_map_behind(tmp_path, lit):
-    """The map may be a file, or a built-in one by name; without one, one line says what to add."""
+    """The map may be a file, or a built-in one by name; without one, a line asks for an option."""
     path = write_map(tmp_path / "sky.hdr")
     light = ("--light", path) if lit == "file" else ("--style", "light=room")
     light_map = read_light_map(path) if lit == "file" else render.LIGHT_MAPS["room"]

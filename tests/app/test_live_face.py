@@ -138,7 +138,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
 
 
 def test_a_sender_without_a_face_releases_the_controls(wire):
-    """Packets without values are no lost signal, but the face returns to rest."""
+    """Packets without values are not a lost signal, but the face returns to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
     assert wire.face.state is State.NO_FACE

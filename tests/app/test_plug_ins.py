@@ -248,7 +248,7 @@ def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
     for words in (draw, move):
-        if name == "empty" and words is move:  # an export asks it for no memory
+        if name == "empty" and words is move:  # an export does not ask for its memory
             continue
         assert BROKEN[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]

@@ -52,7 +52,7 @@ def test_fewer_columns(left_out, tmp_path):
 
 
 def test_values_that_are_none(tmp_path):
-    """A value such as -9.8e5 is no measurement; other values of its frame, and 1.2, count."""
+    """A value such as -9.8e5 is not a measurement; other values of its frame, and 1.2, count."""
     columns = live_link()
     jaw = np.full(120, 0.5)
     jaw[7] = -9.8e5

@@ -14,7 +14,7 @@ from risorius.app.scenes import PlaneScene
 
 @pytest.mark.usefixtures("own_refiners")
 def test_only_switches_numbers_and_words_are_options():
-    """An array that may also be a bool, as numpy 2.2 declares arrays, is no switch."""
+    """An array that may also be a bool, as numpy 2.2 declares arrays, is not a switch."""
 
     def declared(
         faces: npt.ArrayLike,

@@ -155,7 +155,7 @@ def test_easings_stay_between_the_keys(fraction, name):
     ("word", "names"), [("smile", "joy or AU12"), ("frowning", "anger or sadness or AU4")]
 )
 def test_an_everyday_word_finds_its_control(word, names):
-    """An everyday word that is no control's name suggests the control it means."""
+    """An everyday word that is not a control's name suggests the control it means."""
     assert f"did you mean {names}" in refusal(risorius("capture", "--set", word, "-o", "x.png"))
 
 

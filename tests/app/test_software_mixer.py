@@ -21,7 +21,7 @@ CAMERAS = ("front", "20,-60", "-30,10,6")
 
 @pytest.fixture(scope="module")
 def studio() -> Iterator[Capture]:
-    """Two heads side by side, in a size that is no multiple of a tile."""
+    """Two heads side by side, in a size that is not a multiple of a tile."""
     options = CaptureOptions(
         size=(405, 231), beside=(Refinement(refiner=STATIC),), captions=False, samples=4
     )

@@ -146,7 +146,7 @@ def test_saving_asks_where_it_did_not_open(desk, tmp_path):
     desk.scripts.new()
     desk.session.set_key()
     desk.save()
-    assert desk.files.request.confirmed() is None  # the name exists, and a line says so
+    assert desk.files.request.confirmed() is None  # the name exists, and a line reports this
     assert "is there already" in desk.files.request.complaint
     assert taken.read_text() == "precious"
     desk.files.request = None

@@ -367,7 +367,7 @@ def test_a_known_head_needs_no_marking(viewer, tmp_path):
 
 @pytest.mark.slow
 def test_a_known_head_that_does_not_fit_is_marked(viewer, tmp_path, monkeypatch):
-    """A mesh of a known topology with wrong landmarks opens marking, and a line says why."""
+    """A mesh of a known topology with wrong landmarks opens marking; a line gives the reason."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     other = user_head()
     write_topology(tmp_path, other, landmarks=list(range(68)))

@@ -261,7 +261,7 @@ def test_a_found_file_stays_and_is_found_once(session, tmp_path):
 
 
 def test_a_read_only_folder_is_reported_once(session, clock):
-    """A message says that work is not safe in a read-only folder, and the window continues."""
+    """A message reports that work is not safe in a read-only folder, and the window continues."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)
     with pytest.raises(UserError, match=r"not kept safe: .*/proc/none"):

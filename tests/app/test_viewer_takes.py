@@ -146,7 +146,7 @@ def paused(session):
 
 
 def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
-    """Moves in a pause are not recorded, as a line says, and can still be keyed."""
+    """Moves in a pause are not recorded, which a line reports, and can still be keyed."""
     paused(session)
     session.set("AU4", 0.8)
     session.set("jaw_open", 0.1)

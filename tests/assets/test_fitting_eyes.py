@@ -83,7 +83,7 @@ def test_the_flesh_of_the_eyes_is_well_formed(fitted):
 
 
 def test_the_wall_of_a_socket_moves_no_eye():
-    """The wall of a socket narrower than its eyeball is no lid, and does not push the ball back."""
+    """The wall of a socket narrower than its eyeball is not a lid, and does not push the ball."""
     head = assets.load("head")
     normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]

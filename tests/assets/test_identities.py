@@ -96,7 +96,7 @@ def test_an_even_face_is_its_own_mirror_image(seed):
 def test_persons_are_spread_as_published():
     """Among 400 persons, sexes differ nearly as published, and long faces have long noses.
 
-    Persons are no sample of the people behind these norms, but vary around them.
+    Persons are not a sample of the people behind these norms, but vary around them.
     """
     space = person_space()
     everyone = [sample_identity(seed) for seed in range(400)]

@@ -25,7 +25,7 @@ def test_pairs_by_threads(monkeypatch):
 
 
 def test_one_thread_has_no_pair(monkeypatch):
-    """With one thread, one line says how to get more."""
+    """With one thread, one line explains how to get more."""
     monkeypatch.setattr(pairs.threads, "THREAD_COUNT", 1)
     with pytest.raises(UserError, match="NUMBA_NUM_THREADS=2"):
         pairs.by_threads(["2k"], 0.1)

@@ -53,7 +53,7 @@ def test_a_pair_counts_by_its_mean():
 
 
 def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
-    """MediaPipe is an optional extra: one line says how to install it."""
+    """MediaPipe is an optional extra: one line explains how to install it."""
     monkeypatch.setitem(sys.modules, "mediapipe", None)
     (tmp_path / "model.task").write_bytes(b"model")
     result = risorius("bench", "seen", "--model", tmp_path / "model.task")

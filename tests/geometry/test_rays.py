@@ -26,7 +26,7 @@ def test_weights_and_distance_name_one_point():
 
 
 def test_triangles_cut_each_other_where_an_edge_of_one_crosses_the_other():
-    """A common vertex is no cut; `crossings` finds the same edges."""
+    """A common vertex is not a cut; `crossings` finds the same edges."""
     random = np.random.default_rng(3)
     vertices = random.normal(size=(30, 3))
     faces = np.array([random.permutation(30)[:3] for _ in range(60)], dtype=np.int32)

@@ -99,7 +99,7 @@ def test_skin_beside_the_inner_corner_slides_along(simulation, head):
 def test_shut_lids_overlap_beside_the_corners(simulation, head):
     """The last vertices of an upper lid come down as far as its middle.
 
-    They were no margin where the sampled edge ran above them, and stopped 0.2 mm too high; on
+    They were not margin where the sampled edge ran above them, and stopped 0.2 mm too high; on
     coarse heads a gap stayed there.
     """
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})

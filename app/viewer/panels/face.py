@@ -84,7 +84,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         elif base in OPPOSITE or twin not in known:
             rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
-            whole = base if values.get(base) else ""  # a control in no group that a script has set
+            whole = base if values.get(base) else ""  # set by a script, and in no group
             rows.append(Row.of_sides(base, (twin, name), whole, values, linked))
     return rows
 

@@ -227,7 +227,7 @@ class IdleLife:
         self._without_input = 0.0  # [s]
 
     def note_input(self) -> None:
-        """Note input, which shows that a user is there."""
+        """Note input: a user is there."""
         self._without_input = 0.0
 
     @property

@@ -151,8 +151,8 @@ def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
 def test_sectors_are_what_creases_leave_together(soup, angle):
     """Creases at a vertex separate its corners into sectors.
 
-    Corners joined by an edge that is no crease have one sector; corners on both sides of a crease
-    have two.
+    Corners joined by an edge that is not a crease have one sector; corners on both sides of a
+    crease have two.
     """
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle)
