@@ -66,13 +66,13 @@ def turn_lids(
         close = min(drive[e, 0], 1.0)
         free = fold * min(alpha * drive[e, 1] + lids.lower_follows * gaze[e, 1], alpha)
         inward = max(close, drive[e, 1]) * lids.slide[1]
-        angle = lids.closing[row] * close
+        angle = lids.closing[row] * close * (0.8 + 0.2 * close)  # in height, about linear
         if lids.upper[row]:
             follows = lids.upper_follows[0 if gaze[e, 1] > 0.0 else 1]
             low = free - alpha
             free = max(fold * (lids.aperture[e] * drive[e, 2] + follows * gaze[e, 1]), low)
             inward = close * lids.slide[0] + (1.0 - close) * drive[e, 2] * lids.raise_slide
-            angle -= close**3 * lids.overlap[row]  # cubed, so that half a blink is half closed
+            angle -= close**8 * lids.overlap[row]  # only shut lids overlap
         free *= 1.0 - close
         angle += free
         state.hold[i] += lids.fold_hold[row] * min(abs(free) / firm_fold_turn, 1.0)
