@@ -313,7 +313,7 @@ def from_within(hair: Part, faces: Integers32) -> Part:
     """
     used, number = np.unique(faces[:, ::-1], return_inverse=True)
     rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
-    inner_light = 0.6  # fraction of light on the inner side, where no lamp reaches
+    inner_light = 0.9  # fraction of light that passes between the layers of hair
     rows |= {
         "faces": number.reshape(-1, 3).astype(np.int32),
         "colours": inner_light * rows["colours"],

@@ -101,9 +101,9 @@ def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
     sample_count: number of vertices along each strand.
     """
     inside = from_within(hair, hair.faces)
-    lit = replace(
-        inside, normals=-inside.normals
-    )  # locks that face away from the eye are not drawn
+    # Locks that face away from the eye are not drawn, so these are lit like the outer side. Hence
+    # they are darker: no lamp reaches the inner side of tips.
+    lit = replace(inside, normals=-inside.normals, colours=0.65 * inside.colours)
     is_last = (hair.faces % sample_count >= sample_count - 2).all(axis=1)
     inner = replace(lit, name=lit.name + "_tips", faces=lit.faces[is_last])
     outer = replace(hair, name=hair.name + "_tips", faces=hair.faces[is_last])
