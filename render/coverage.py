@@ -102,5 +102,6 @@ def part_numbers(placed: PlacedBuffers) -> Numbers:
 def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:
     """Set the uniforms with which a program writes surface numbers."""
     for name, value in (("numbers", numbers), ("depth_range", view.depth_range)):
-        if name in program:  # absent in programs for strands, or without depths
+        # Absent in programs for strands, or without depths; `in` would look at all names.
+        if program.get(name, None) is not None:
             program[name] = value

@@ -31,6 +31,8 @@ class WindowSurface(Surface):
     """A surface in a window; `detail`, `area`, `rules` and `labels` may be set for the next frames.
 
     - handle: the GLFW window, for input and GUI libraries.
+    - frame_size: width and height [pixels] that a frame would have if it began now, as of the last
+      events; a minimised window counts as one pixel.
     - detail: resolution of the scene.
     - area: the rectangle that shows the scene [pixels], if panels hide the rest; None: all.
     - rules: rectangles [pixels] in one colour over the scene, such as a line between two halves.
@@ -41,6 +43,9 @@ class WindowSurface(Surface):
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
         self._glfw = glfw
         self.handle = handle
+        # Each question for the size waits for the answer of the X server.
+        glfw.set_framebuffer_size_callback(handle, self._note_size)
+        self._note_size(handle, *glfw.get_framebuffer_size(handle))
         super().__init__(gl, size := self.frame_size, samples)
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
@@ -56,11 +61,9 @@ class WindowSurface(Surface):
         """Width and height of the window's frame [pixels]; viewports are given in these pixels."""
         return self._compositor.size
 
-    @property
-    def frame_size(self) -> tuple[int, int]:
-        """Width and height that a frame would have if it began now [pixels]."""
-        width, height = self._glfw.get_framebuffer_size(self.handle)
-        return max(int(width), 1), max(int(height), 1)  # a minimised window counts as one pixel
+    def _note_size(self, _: Any, width: int, height: int) -> None:
+        """Note a new size of the frame."""
+        self.frame_size = max(int(width), 1), max(int(height), 1)
 
     @property
     def should_close(self) -> bool:

@@ -36,7 +36,7 @@ def test_window_that_is_resized(window):
     draw_image(window, sphere())
     glfw.set_window_size(window.handle, 130, 70)
     end = time.monotonic() + 60.0
-    while tuple(glfw.get_framebuffer_size(window.handle)) != (130, 70):
+    while window.frame_size != (130, 70):
         assert time.monotonic() < end
         glfw.wait_events_timeout(0.01)
     frame = draw_image(window, sphere())

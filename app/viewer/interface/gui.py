@@ -120,26 +120,25 @@ class Gui:
 
     def set_theme(self, theme: str, zoom: float) -> None:
         """Apply a theme; sizes are scaled by `zoom`, and by the density of the screen."""
-        scale = zoom * self._screen_scale()
-        if self._dressed == (theme, scale):
+        density = max(glfw.get_window_content_scale(self._window))
+        if self._dressed == (theme, zoom, density):
             return
-        self._dressed = theme, scale
+        self._dressed = theme, zoom, density
         self.theme = THEMES[theme]
+        scale = zoom * self._screen_scale(density)
         style = imgui.get_style()
         _set_colours(style, self.theme)
         style.scale_all_sizes(scale)
         style.font_scale_main = scale
 
-    def _screen_scale(self) -> float:
+    def _screen_scale(self, density: float) -> float:
         """Return the scale of a dense screen, or 1 where window units are scaled already.
 
         On macOS a window unit is two pixels, as imgui knows; on Windows and X11 it is one pixel.
         """
         width = max(glfw.get_window_size(self._window)[0], 1)
         pixels_per_unit = glfw.get_framebuffer_size(self._window)[0] / width
-        return max(
-            max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
-        )
+        return max(density / max(pixels_per_unit, 1.0), 1.0)
 
     def set_title(self, title: str) -> None:
         """Set the window's title if it has changed."""
