@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any
 
 from .errors import UserError
-from .extras import needed
+from .extras import optional_import
 from .stopping import cleaned_up_if_stopped
 from .text import in_one_line
 from .workers import ATTEMPTS, WorkerPool, share_of_cores
@@ -35,7 +35,7 @@ def run_on_cluster(
     An item whose workers are lost goes to other workers. The cluster deletes each fetched result.
     Raises UserError if no scheduler answers.
     """
-    distributed = needed("distributed", "--scheduler", "cluster")
+    distributed = optional_import("distributed", "--scheduler", "cluster")
     client = _client(distributed, scheduler)
     run = secrets.token_hex(8)
 
@@ -46,7 +46,7 @@ def run_on_cluster(
 
     with client, cleaned_up_if_stopped(end):
         try:
-            yield from _results(distributed, client, partial(_do, run, work), items)
+            yield from _results(distributed, client, partial(_work_on, run, work), items)
         finally:
             end()
 
@@ -92,7 +92,7 @@ def _results(
             yield items[number], None, in_one_line(error)
 
 
-def _do(run: str, work: Callable[[WorkerPool, Any], Any], item: Any) -> Any:
+def _work_on(run: str, work: Callable[[WorkerPool, Any], Any], item: Any) -> Any:
     """Work on an item, inside a Dask worker."""
     return work(_pools.setdefault(run, WorkerPool(share_of_cores())), item)
 

@@ -8,7 +8,7 @@ from typing import Any
 from .errors import UserError
 
 
-def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
+def optional_import(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
     """Import an optional library; raise UserError, with the remedy, if it is missing.
 
     what: the feature that needs it ("--passes"). extra: this distribution's extra that installs it.

@@ -21,7 +21,7 @@ import PIL.Image
 from risorius import render
 
 from .errors import UserError
-from .extras import needed
+from .extras import optional_import
 from .files import read_bytes
 
 LIGHT_SUFFIXES = (".hdr", ".exr")
@@ -181,7 +181,7 @@ def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArr
 @contextlib.contextmanager
 def _opened_openexr(path: Path, *, header_only: bool) -> Iterator[Any]:
     """Open an OpenEXR file; raise ValueError if it cannot be read, here or inside the block."""
-    module = needed("OpenEXR", "a light of .exr", "passes")
+    module = optional_import("OpenEXR", "a light of .exr", "passes")
     try:
         with module.File(str(path), separate_channels=True, header_only=header_only) as file:
             yield file

@@ -89,7 +89,7 @@ def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
         other = int(np.flatnonzero(mirrored == known.landmarks[number])[0])
         uv[number - FIRST_INNER] = place
         uv[other - FIRST_INNER] = place if other == number else _mirror_image(np.array(place))
-    ends = [_evenly(np.array(table["outline"][name]), LANES) for name in ("inner", "outer")]
+    ends = [_evenly_spaced(np.array(table["outline"][name]), LANES) for name in ("inner", "outer")]
     fraction = np.linspace(0.0, 1.0, STEPS)[:, None]
     left = ends[0][:, None] + fraction * (ends[1] - ends[0])[:, None]
     lanes = np.stack([_mirror_image(left), left])
@@ -100,7 +100,7 @@ def _mirror_image(uv: Floats64) -> Floats64:
     return np.asarray(uv * [-1.0, 1.0] + [1.0, 0.0])
 
 
-def _evenly(corners: Floats64, count: int) -> Floats64:
+def _evenly_spaced(corners: Floats64, count: int) -> Floats64:
     """Points along a polyline, equally many between each pair of corners, shape (count, k)."""
     return evenly_spaced(corners, np.arange(float(len(corners))), count)
 

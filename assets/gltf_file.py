@@ -41,7 +41,7 @@ class GltfFile:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # pygltflib would print them
             self.document = pygltflib.GLTF2.from_json(
-                text.decode("utf-8-sig"), infer_missing=True, object_hook=_tidied
+                text.decode("utf-8-sig"), infer_missing=True, object_hook=_for_pygltflib
             )
         self._folder = folder
         self._buffers = Buffers([each.uri for each in self.document.buffers or []], data, folder)
@@ -132,7 +132,7 @@ def fractions(rows: npt.NDArray[Any]) -> Floats64:
     return np.maximum(rows.astype(np.float64) / greatest, -1.0)
 
 
-def _tidied(entries: Mapping[str, Any]) -> dict[str, Any]:
+def _for_pygltflib(entries: Mapping[str, Any]) -> dict[str, Any]:
     """An object of the document in a form that pygltflib can hold.
 
     pygltflib takes extras only as objects, and has no weights of nodes, which are put into the

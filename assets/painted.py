@@ -69,9 +69,9 @@ def read_painted(path: Path) -> PaintedMesh:
         return PaintedMesh(
             mesh,
             surface.uv,
-            _within(surface.face_uv, len(surface.uv)),
+            _valid_indices(surface.face_uv, len(surface.uv)),
             surface.normals,
-            _within(surface.face_normals, len(surface.normals)),
+            _valid_indices(surface.face_normals, len(surface.normals)),
             surface.material,
             tuple(_materials(surface, path.parent)),
             surface.part if surface.parts else surface.material,
@@ -85,7 +85,7 @@ def read_painted(path: Path) -> PaintedMesh:
     )
 
 
-def _within(numbers: Integers64, count: int) -> Integers64:
+def _valid_indices(numbers: Integers64, count: int) -> Integers64:
     """Replace indices that are not below `count` by -1."""
     return np.where(numbers < count, numbers, -1)
 

@@ -102,14 +102,14 @@ class Shot:
     triangles: int
     image: Image
 
-    def off(self, other: Shot) -> Floats64:
+    def difference(self, other: Shot) -> Floats64:
         """Difference of each pixel from the one in another picture [levels of 255], (H, W)."""
         apart = self.image.astype(np.float64) - other.image
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 
     def rms(self, truth: Shot) -> float:
         """Root mean square difference from another picture [levels of 255]."""
-        return float(np.sqrt((self.off(truth) ** 2).mean()))
+        return float(np.sqrt((self.difference(truth) ** 2).mean()))
 
 
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:

@@ -28,7 +28,7 @@ import PIL.Image
 
 from risorius.app.dataset.table import BARE
 from risorius.app.errors import UserError
-from risorius.app.extras import needed
+from risorius.app.extras import optional_import
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
@@ -105,7 +105,7 @@ def opened(detector: str, model: Path | None) -> Iterator[Detector]:
 
 def _dlib(model: Path | None) -> Detector:
     """dlib's detector of frontal faces, and its 68 points in the face."""
-    dlib = needed("dlib", "the detector", "dlib")
+    dlib = optional_import("dlib", "the detector", "dlib")
     file = model or packaged_model()
     try:
         predictor = dlib.shape_predictor(str(file))

@@ -20,7 +20,7 @@ import numpy as np
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.extras import needed
+from risorius.app.extras import optional_import
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.refine.mesh import threads
 
@@ -106,7 +106,7 @@ def by_matrix(
 
     Raises UserError without libigl.
     """
-    igl = needed("igl", "libigl", "rivals", package="libigl")
+    igl = optional_import("igl", "libigl", "rivals", package="libigl")
     rows = []
     for size in sizes or ("2k", "20k", "200k", "1M"):
         progress(size)

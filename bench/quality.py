@@ -116,14 +116,14 @@ def measure(
             pose = subject.poses[name]
             faces = subject.dense_faces
             dense = pose.dense, vertex_normals(pose.dense, faces), faces
-            truth = _shoot(canvas, cameras, dense)
+            truth = _grey_pictures(canvas, cameras, dense)
             for method, make in bound.items():
                 mesh = make(pose.coarse)
                 positions, _, triangles, *_ = mesh
                 distances = closest_points(pose.dense, positions, triangles).distances
                 ratio = len(triangles) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))
-                errors = _differences(_shoot(canvas, cameras, mesh), truth)
+                errors = _differences(_grey_pictures(canvas, cameras, mesh), truth)
                 scores.append(Score(method, name, ratio, distance, *errors))
     return scores
 
@@ -143,11 +143,11 @@ def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callab
     if refiner == "sliding":
         triangle_ratio = 2.0
         most = triangle_ratio * len(subject.coarse_faces)
-        return lambda positions: _slid(bound, own["criterion"], positions, most)
+        return lambda positions: _refined_to_count(bound, own["criterion"], positions, most)
     return bound.refine
 
 
-def _slid(
+def _refined_to_count(
     refiner: refine.Refiner, criterion: Any, positions: Points, most: float
 ) -> refine.RefinedMesh:
     """Refine with both thresholds scaled so that there are `most` triangles or slightly fewer."""
@@ -170,7 +170,7 @@ def _slid(
     return refined(high)
 
 
-def _shoot(
+def _grey_pictures(
     canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
 ) -> tuple[Points, Flags]:
     """Grey levels over the background (views, SIZE, SIZE), and flags of covered fine pixels.

@@ -26,7 +26,7 @@ import trimesh
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.extras import needed
+from risorius.app.extras import optional_import
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
 from risorius.geometry.closest import closest_points
@@ -139,7 +139,7 @@ def available() -> tuple[list[Method], list[str]]:
     skipped = {}
     for method in METHODS:
         try:
-            needed(method.module, method.package, "rivals", package=method.package)
+            optional_import(method.module, method.package, "rivals", package=method.package)
         except UserError as error:
             skipped[method.package] = f"skipped: {error}"
         else:

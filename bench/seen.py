@@ -26,9 +26,9 @@ import numpy as np
 
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
-from risorius.app.control_names import parted, twin_of
+from risorius.app.control_names import split_side, twin_of
 from risorius.app.errors import UserError
-from risorius.app.extras import needed
+from risorius.app.extras import optional_import
 from risorius.app.motion import SETTLING
 from risorius.app.pictures import Image
 from risorius.app.recordings.names import ARKIT
@@ -65,7 +65,9 @@ def face_landmarker(model: Path, **options: bool) -> Iterator[Callable[[Image], 
     Raises UserError if the file is not a model of this kind, or if MediaPipe is missing.
     """
     with silent():
-        mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
+        mediapipe = optional_import(
+            "mediapipe", "the face tracker", "mediapipe", package="MediaPipe"
+        )
         from mediapipe.tasks.python import BaseOptions, vision
     base = BaseOptions(model_asset_path=str(model))
 
@@ -142,7 +144,7 @@ def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> S
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every shape of ARKit: the name without side, and the names with sides."""
     for name in ARKIT:
-        stem, side = parted(name)
+        stem, side = split_side(name)
         if not side:
             yield name, (name,)
         elif side == "Left":

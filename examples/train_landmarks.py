@@ -86,7 +86,7 @@ def _recoloured(pictures: Tensor) -> Tensor:
     return lit.clamp(1e-4, 1.0) ** contrast
 
 
-def _some(pictures: Tensor) -> list[int]:
+def _random_part(pictures: Tensor) -> list[int]:
     """Indices of about four tenths of the pictures, chosen at random."""
     is_taken = torch.rand(len(pictures)) < 0.4
     numbers: list[int] = torch.nonzero(is_taken).flatten().tolist()
@@ -95,7 +95,7 @@ def _some(pictures: Tensor) -> list[int]:
 
 def _blur(pictures: Tensor) -> None:
     """Blur some pictures by reducing and enlarging them."""
-    for number in _some(pictures):
+    for number in _random_part(pictures):
         small = int(torch.randint(28, 80, ()))
         picture = pictures[number : number + 1]
         soft = functional.interpolate(picture, (small, small), mode="area")
@@ -104,7 +104,7 @@ def _blur(pictures: Tensor) -> None:
 
 def _cover(pictures: Tensor) -> None:
     """Cover some faces by a rectangle of one colour."""
-    for number in _some(pictures):
+    for number in _random_part(pictures):
         top, left, height, width = torch.randint(8, 72, (4,)).tolist()
         rows = slice(top, top + height // 2)
         columns = slice(left, left + width // 2)

@@ -90,7 +90,7 @@ class Compositor:
         """Convert an area of this frame to pixels of the scene."""
         return None if area is None else scaled(area, scene.size[0] / self.size[0])
 
-    def lay(self, x: int, y: int, image: Any) -> None:
+    def draw_label(self, x: int, y: int, image: Any) -> None:
         """Draw a label (h, w, 4) into the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape

@@ -56,12 +56,12 @@ class LightMap:
         scale = usual_light / max(float(front @ _luminance(lit) / front.sum()), 1e-9)
         return (
             Light(
-                to_key=_three(to_key),
+                to_key=_per_colour(to_key),
                 to_fill=(0.0, 0.0, 1.0),
-                key=_three(scale * key),
+                key=_per_colour(scale * key),
                 fill=(0.0, 0.0, 0.0),
                 rim=(0.0, 0.0, 0.0),
-                around=tuple(_three(row) for row in scale * around),
+                around=tuple(_per_colour(row) for row in scale * around),
             ),
             scale,
         )
@@ -136,7 +136,7 @@ def _luminance(light: Floats64) -> Floats64:
     return np.asarray(light @ [0.2126, 0.7152, 0.0722])
 
 
-def _three(values: Floats64) -> tuple[float, float, float]:
+def _per_colour(values: Floats64) -> tuple[float, float, float]:
     red, green, blue = values.round(5).tolist()
     return red, green, blue
 

@@ -121,14 +121,16 @@ class WindowSurface(Surface):
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
         for label in self.labels:
-            self._compositor.lay(*label)
+            self._compositor.draw_label(*label)
 
     def show(self, image: Image) -> None:
         """Show an image of the frame's size instead of a frame, (H, W, 3), uint8."""
         self.make_current()
         self.gl.screen.use()
         self.gl.scissor = None
-        self._compositor.lay(0, 0, np.dstack([image, np.full(image.shape[:2], 255, np.uint8)]))
+        self._compositor.draw_label(
+            0, 0, np.dstack([image, np.full(image.shape[:2], 255, np.uint8)])
+        )
         self._glfw.swap_buffers(self.handle)
 
     def read(self) -> Image:

@@ -219,7 +219,7 @@ def read_valid_entries(kind: type[Read], document: Any) -> tuple[Read, list[str]
         except ValidationError as problem:
             first = problem.errors(include_url=False)[0]
             found.append(_line("", first).removeprefix(": "))
-            document = _without(document, first["loc"])
+            document = _without_entry(document, first["loc"])
 
 
 def quoted(value: object) -> str:
@@ -304,14 +304,14 @@ def _line(where: str, problem: ErrorDetails) -> str:
     return f"{place}: was {quoted(problem['input'])}, must be {allowed}"
 
 
-def _without(document: Any, place: Sequence[int | str]) -> Any:
+def _without_entry(document: Any, place: Sequence[int | str]) -> Any:
     """A table without the entry at this place, which may be in a nested table."""
     keys = [key for key in place if not str(key).startswith(OWN)]
     if not isinstance(document, Mapping) or not keys or keys[0] not in document:
         return {}
     left = dict(document)
     if len(keys) > 1 and isinstance(left[keys[0]], Mapping) and keys[1] in left[keys[0]]:
-        left[keys[0]] = _without(left[keys[0]], keys[1:])
+        left[keys[0]] = _without_entry(left[keys[0]], keys[1:])
     else:
         del left[keys[0]]
     return left

@@ -119,8 +119,8 @@ class LineMotion(NamedTuple):
 def straight_fibre(fibre: Fibre, landmarks: Floats64, side: Side) -> Floats64:
     """Points of one fibre [mm], shape (FIBRE_POINTS, 3), from its origin to its insertion."""
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
-    origin = fibre.origin.on(landmarks, side)
-    insertion = fibre.insertion.on(landmarks, side)
+    origin = fibre.origin.position(landmarks, side)
+    insertion = fibre.insertion.position(landmarks, side)
     points: Floats64 = origin * (1.0 - along) + insertion * along
     return points
 

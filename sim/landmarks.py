@@ -72,7 +72,7 @@ class LandmarkPoint:
     mix: tuple[tuple[int, float], ...]
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def on(self, landmarks: Floats64, side: Side) -> Floats64:
+    def position(self, landmarks: Floats64, side: Side) -> Floats64:
         """Position [mm, standard space], shape (3,), on a head with these landmarks (68, 3).
 
         A point of the right side is the mirror image of its position in the rig.

@@ -257,7 +257,7 @@ def _ring_pull(
 ) -> Floats64:
     """Displacement of points by a sphincter at full activation [mm], shape (n, 3)."""
     x = attached.positions
-    centre = muscle.centre.on(landmarks, side)
+    centre = muscle.centre.position(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
     if muscle.opening != (0.0, 0.0):
         pull[:, 1] += _round_mouth(muscle, x, landmarks)
@@ -294,7 +294,7 @@ def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats
 
 def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
     """Centre of a sphincter's ellipse."""
-    return (muscle.shape or muscle.centre).on(landmarks, side)
+    return (muscle.shape or muscle.centre).position(landmarks, side)
 
 
 def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Floats64:

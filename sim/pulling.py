@@ -158,7 +158,7 @@ class Pull:
         most_rounds = 12  # of Gauss and Newton at most
         for _ in range(most_rounds):
             before = self._value
-            self._value = before + self._system().least(needed)
+            self._value = before + self._system().minimise(needed)
             self._take_values()
             if np.abs(self._value - before).max(initial=0.0) < self.ROUND_TOLERANCE:
                 break
@@ -216,7 +216,7 @@ class Pull:
         moved = []
         for names in candidates:
             self._probe.copy_from(self._base)
-            self._probe.jump(self._towards(names, 1.0))
+            self._probe.jump(self._shifted(names, 1.0))
             self._probe.step(STEP)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         most_candidates = 16  # number of examined controls: those that move the finger's skin most
@@ -232,7 +232,7 @@ class Pull:
         """Mean square distance of vertices (V, 3) under the finger from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
-    def _towards(self, names: Names, fraction: float) -> dict[str, float]:
+    def _shifted(self, names: Names, fraction: float) -> dict[str, float]:
         """Values of controls moved up by a share of their range, or down without room above."""
         low, high = self._base.controls.limits[names[0]]
         value = self._base.controls.values[names[0]]
@@ -244,7 +244,7 @@ class Pull:
         """Slopes of the skin in the controls with these indices, at the current values."""
         probe_fraction = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
-            moved = self._towards(self.candidates[n], probe_fraction)
+            moved = self._shifted(self.candidates[n], probe_fraction)
             self._probe.copy_from(self._base)
             _rest(self._probe, moved)
             by = next(iter(moved.values())) - self._value[n]
@@ -309,7 +309,7 @@ class _Lasso(NamedTuple):
     low: Floats64  # (C,)
     high: Floats64  # (C,)
 
-    def least(self, usable: Flags) -> Floats64:
+    def minimise(self, usable: Flags) -> Floats64:
         """Move one control after another to its minimum, until none moves any more; return x, (C,).
 
         usable: flags of controls, shape (C,); all others return to their first values.
@@ -337,6 +337,6 @@ class _Lasso(NamedTuple):
 
     def cost(self, usable: Flags) -> float:
         """Return the least value of the sum with only these controls, up to a constant."""
-        x = self.least(usable)
+        x = self.minimise(usable)
         spent = self.price @ np.abs(self.changed + x)
         return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

@@ -96,8 +96,8 @@ class Anatomy:
         openings = self._openings() if SIDES[view.side] else {}
         others = [
             place(half, bones, throws_shadow=not part.strand_radius, opening=opening)
-            for part in (*stay, *self._soft(view))
-            for half, opening in self._lit(face, view, part, openings)
+            for part in (*stay, *self._mouth_linings(view))
+            for half, opening in self._with_openings(face, view, part, openings)
         ]
         hair = self._hair_on_opaque_side(face, view) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
@@ -131,7 +131,7 @@ class Anatomy:
         self._followed = now
         return self._muscles
 
-    def _soft(self, view: AnatomyView) -> list[Any]:
+    def _mouth_linings(self, view: AnatomyView) -> list[Any]:
         """Return the parts that line the mouth, if they can be seen."""
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
@@ -165,7 +165,7 @@ class Anatomy:
         rims = self._scene.rims(render.Opening.RIM_POINTS)
         return {name: render.Opening(*rim) for name, rim in rims.items()}
 
-    def _lit(
+    def _with_openings(
         self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]
     ) -> list[tuple[Any, render.Opening | None]]:
         """Return a part, or its two halves on opaque and translucent sides, with their openings.

@@ -195,9 +195,9 @@ class Muscles:
         grid = _sections(rails, normal, thick)
         sums = face.simulation.controls.sums
         active = [max((sums[name] for name in own), default=0.0) for own in self._controls]
-        self._set(grid, np.array(active))
+        self._set_shape(grid, np.array(active))
 
-    def _set(self, grid: Floats64, active: Floats64) -> None:
+    def _set_shape(self, grid: Floats64, active: Floats64) -> None:
         """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
         # Share of tendon in the colour: large at both ends of a band.
@@ -257,7 +257,7 @@ class _Skin:
     def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
         """Return the heights of points (..., 3) above the skin, normals, and depths of the bone."""
         out = (points - self._middle) * (1.0, 0.25, 1.0)
-        near, weight = self._near(points, out)
+        near, weight = self._nearest(points, out)
         weight /= weight.sum(axis=-1, keepdims=True)
         normals = self.normals[near]
         off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
@@ -277,7 +277,7 @@ class _Skin:
         height: Floats64 = np.einsum("nc,nc->n", off, unit_vectors(near.interpolate(self.normals)))
         return height.reshape(points.shape[:-1])
 
-    def _near(
+    def _nearest(
         self, points: Floats64, out: Floats64, count: int = NEAR, reach: float = 0.35
     ) -> tuple[Any, Floats64]:
         """Return the `count` vertices nearest to points, and their weights, (..., count) each."""
@@ -293,7 +293,7 @@ class _Skin:
         the mouth is closed, both lips have vertices near a point. A vertex carries a point only if
         the path along the skin from the band's middle is not much longer than the straight line.
         """
-        near, weight = self._near(points, out, 3 * NEAR, 1.0)
+        near, weight = self._nearest(points, out, 3 * NEAR, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
         starts, number = np.unique(first, return_inverse=True)
         path_length = path_lengths(self.x, self._faces, starts)

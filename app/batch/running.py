@@ -72,13 +72,13 @@ def do_line(pool: WorkerPool, job: Job) -> Result:
     begin = time.monotonic()
     frames = list[int]()
     try:
-        pool.run(_do, job, on_message=frames.append, log=job.log)
+        pool.run(_run_line, job, on_message=frames.append, log=job.log)
     except UserError as error:
         return Result(job, FAILED, time.monotonic() - begin, error=str(error))
     return Result(job, OK, time.monotonic() - begin, frames[-1])
 
 
-def _do(job: Job, send: Send) -> None:
+def _run_line(job: Job, send: Send) -> None:
     """Run a line in this process, and send the number of frames that it played."""
     print(f"risorius {job.text}", flush=True)
     try:

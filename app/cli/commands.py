@@ -236,7 +236,7 @@ def open_window(
     drawing.check_head()
     path = settings_path()
     with SplashScreen(size, path) as splash:
-        script, head, complaint = splash.during(load)
+        script, head, complaint = splash.run(load)
         if drawing.files:
             splash.settings.note_recent(*drawing.files)
         if drawing.light is not None:

@@ -149,7 +149,7 @@ class Subject:
         from ..refining.refiners import help_of_options, parse_options
 
         if "help" in self.refiner_settings:
-            click.echo(help_of_options(Refinement(self.look, self.refiner).on("face")[0]))
+            click.echo(help_of_options(Refinement(self.look, self.refiner).for_scene("face")[0]))
             raise click.exceptions.Exit(0)
         options = parse_options(self.refiner, self.refiner_settings)
         return Refinement(self.look, self.refiner, options)

@@ -29,7 +29,7 @@ _TWINS = {  # mirrored controls whose names show no side: eyes turn left, right 
 
 
 @functools.lru_cache(maxsize=KNOWN)
-def parted(name: str) -> tuple[str, str]:
+def split_side(name: str) -> tuple[str, str]:
     """Split a name into its base and its side as spelled; the side is "" for the middle."""
     for side in (side for pair in SIDES for side in pair):
         if name.endswith(side):
@@ -42,7 +42,7 @@ def twin_of(name: str) -> str:
     """Return the name of the mirrored control; a control in the middle mirrors itself."""
     if name in _TWINS:
         return _TWINS[name]
-    base, side = parted(name)
+    base, side = split_side(name)
     for left, right in SIDES:
         if side in (left, right):
             return base + (right if side == left else left)
@@ -63,9 +63,9 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
     result = dict(values)
     sideways = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")
     for name, value in values.items():
-        base, side = parted(name)
+        base, side = split_side(name)
         twin = twin_of(name)
-        is_direction = not side and parted(twin)[0] != name  # such as AU61 and AU62
+        is_direction = not side and split_side(twin)[0] != name  # such as AU61 and AU62
         if is_direction or base in OPPOSITE or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
@@ -86,10 +86,10 @@ def sentence(text: str) -> str:
     return text[:1].upper() + text[1:] if is_plain else text
 
 
-def called(name: str, *twin: str) -> str:
+def plain_name(name: str, *twin: str) -> str:
     """Return a control's plain name with its side, or with "both sides" if its twin is given."""
-    plain = title_of(name)[1] or readable(parted(name)[0])
-    side = "both sides" if twin else parted(name)[1].strip("_")
+    plain = title_of(name)[1] or readable(split_side(name)[0])
+    side = "both sides" if twin else split_side(name)[1].strip("_")
     return f"{plain}, {side}" if side else plain
 
 
@@ -113,7 +113,7 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
 
     name: without its side, if both sides share a name. action: effect of the control, in words.
     """
-    stem = parted(name)[0]
+    stem = split_side(name)[0]
     plain = str(_table("names").get(name) or _table("names").get(stem) or "")
     first = action.partition(":")[0]
     if name.startswith("AU"):
@@ -138,7 +138,7 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
 
     words: as typed into a search. names: names of controls with their sides.
     """
-    stems = {*names, *(parted(name)[0] for name in names)}
+    stems = {*names, *(split_side(name)[0] for name in names)}
     return all(
         any(
             form in text.lower()

@@ -108,8 +108,8 @@ class SetFolder:
         for name in dict.fromkeys((*was, *options)):
             if was.get(name) != options.get(name):
                 raise UserError(
-                    f"{self.path}: was begun with {name} {_short(was.get(name))}, not "
-                    f"{_short(options.get(name))}; repeat the old value, or choose another "
+                    f"{self.path}: was begun with {name} {_shortened(was.get(name))}, not "
+                    f"{_shortened(options.get(name))}; repeat the old value, or choose another "
                     "folder"
                 )
 
@@ -195,6 +195,6 @@ def _length(file: Path) -> int | None:
         return None
 
 
-def _short(value: object) -> str:
+def _shortened(value: object) -> str:
     text = json.dumps(value)
     return text if len(text) < 60 else f"{text[:57]}..."

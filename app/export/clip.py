@@ -73,13 +73,15 @@ class Clip:
         needs a viewpoint, and PlugInError if code of another package fails.
         """
         refiner = self.refiner(refinement) if refiner is None else refiner
-        plug_ins = plug_ins_of(*refinement.on(self.scene.name))
+        plug_ins = plug_ins_of(*refinement.for_scene(self.scene.name))
         for frame in range(self.frame_count):
             try:
                 with reported(plug_ins):
                     mesh = refiner.refine(self.skin.at(frame))
             except ValueError as error:
-                raise UserError(f"refiner {refinement.on(self.scene.name)[0]}: {error}") from None
+                raise UserError(
+                    f"refiner {refinement.for_scene(self.scene.name)[0]}: {error}"
+                ) from None
             yield mesh
 
 

@@ -93,13 +93,13 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         counts.append(len(mesh.triangles))
         topologies.add(hash(mesh.triangles.tobytes()))
         splits = refiner.splits if len(counts) == 1 else np.maximum(splits, refiner.splits)
-    plug_ins = plug_ins_of(*refinement.on(clip.scene.name))
+    plug_ins = plug_ins_of(*refinement.for_scene(clip.scene.name))
     with reported(plug_ins):  # triangles at rest may differ from all frames
         at_rest = refiner.refine(clip.scene.rest_positions)
     topologies.add(hash(at_rest.triangles.tobytes()))
     changing = refiner
     if len(topologies) > 1:
-        name = refinement.on(clip.scene.name)[0]
+        name = refinement.for_scene(clip.scene.name)[0]
         if all(each.name != "splits" for each in refine.parameters(name)):
             raise UserError(
                 f"--refined: the triangles of refiner {name} change, and it has no option splits; "

@@ -18,14 +18,14 @@ import PIL.Image
 
 from risorius.geometry.colour import to_linear
 
-from ..extras import needed
+from ..extras import optional_import
 from ..rig.surface import METRES, MovingSurface
 from ..text import as_text
 from .clip import Clip
 from .formats import ExportRequest
 
 Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
-    needed(f"pxr.{name}", "USD", "export", package="usd-core")
+    optional_import(f"pxr.{name}", "USD", "export", package="usd-core")
     for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 

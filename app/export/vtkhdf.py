@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from ..extras import needed
+from ..extras import optional_import
 from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import ExportRequest
 
-h5py = needed("h5py", "VTKHDF", "export")
+h5py = optional_import("h5py", "VTKHDF", "export")
 
 
 def write_vtkhdf(clip: Clip, part: Path, request: ExportRequest) -> None:

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..extras import needed
+from ..extras import optional_import
 from ..text import in_one_line
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Protocol:
     def check(self) -> None:
         """Raise UserError if the library is missing."""
         if self.library:
-            needed(self.library, self.title, "live", package="python-osc")
+            optional_import(self.library, self.title, "live", package="python-osc")
 
     def parser(self) -> Parser:
         """Import the protocol's module, and return its function that reads a packet."""

@@ -62,10 +62,10 @@ class Life:
         strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)
         blink_span = 3.5  # [s] for each blink
         return {
-            "lids": _both(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
+            "lids": _both_sides(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
             "eyes": {
-                **_both("gaze_horizontal", across / GAZE),
-                **_both("gaze_vertical", along / GAZE),
+                **_both_sides("gaze_horizontal", across / GAZE),
+                **_both_sides("gaze_vertical", along / GAZE),
             },
             "head": {name: most * share / DEGREES[name] for (name, most), share in strays},
         }
@@ -123,7 +123,7 @@ class Life:
         return [float(each) for each in drifts]
 
 
-def _both(name: str, value: float) -> Values:
+def _both_sides(name: str, value: float) -> Values:
     sides = "left", "right"
     return {f"{name}_{side}": value for side in sides}
 
@@ -200,7 +200,7 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     share = math.prod(map(_followed, aside, followed_angles, lost_angles))
     eye_angle = 10.0  # [degrees] from straight ahead that only the eyes turn
     head_fraction = 0.5  # share of the angle beyond it that the head turns
-    turn, rise = (share * head_fraction * _beyond(angle, eye_angle) for angle in aside)
+    turn, rise = (share * head_fraction * _excess(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(face.bone_transforms()["cranium"])
     seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer in coordinates of the turned head
     eyes = {}
@@ -221,7 +221,7 @@ def _angles(direction: Floats64) -> tuple[float, float]:
     return math.degrees(math.atan2(x, z)), math.degrees(math.atan2(y, math.hypot(x, z)))
 
 
-def _beyond(angle: float, least: float) -> float:
+def _excess(angle: float, least: float) -> float:
     return math.copysign(max(abs(angle) - least, 0.0), angle)
 
 

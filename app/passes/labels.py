@@ -27,7 +27,7 @@ from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.transforms import angles_of
 
 from ..errors import UserError
-from ..extras import needed
+from ..extras import optional_import
 from ..files import named_in_text, written_atomically
 from ..pictures import Image
 from ..scenes import Face, Scene
@@ -194,7 +194,7 @@ def labelled(
 
 def openexr() -> Any:
     """Import OpenEXR's module; raise UserError if it is missing."""
-    return needed("OpenEXR", "--passes", "passes")
+    return optional_import("OpenEXR", "--passes", "passes")
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:

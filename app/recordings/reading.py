@@ -82,7 +82,7 @@ def _read_text(text: str, path: Path, request: TakeRequest) -> Take:
     for is_known, read_table in TABLES:
         if is_known(names):
             return read_table(table_in(text, source=str(path)), request)
-    raise UserError(f"{path}: {_strange(names)}; known are {known_kinds}")
+    raise UserError(f"{path}: {_unknown_kind(names)}; known are {known_kinds}")
 
 
 def is_recording(path: Path) -> bool:
@@ -97,7 +97,7 @@ def is_recording(path: Path) -> bool:
     return any(recognises(names) for recognises, _ in TABLES)
 
 
-def _strange(names: tuple[str, ...]) -> str:
+def _unknown_kind(names: tuple[str, ...]) -> str:
     """Describe a file of an unknown kind, for an error text."""
     if len(names) < 2:
         return "is neither a table nor JSON"

@@ -63,7 +63,7 @@ class Report:
 def report_of(take: Take, calibration: Calibration) -> Report:
     """Return the report on a take."""
     channels = take.channels
-    still = _still(take)
+    still = _constant_channels(take)
     shapes = [name for name in ARKIT if name in channels]
     rows = [
         ("used", _used(set(chosen(channels)) - still)),
@@ -88,7 +88,7 @@ def _recognised(take: Take) -> str:
     return f"{take.kind}{calibrated}, {count} frames in {take.duration:.2f} s, {rate:.4g} a second"
 
 
-def _still(take: Take) -> set[str]:
+def _constant_channels(take: Take) -> set[str]:
     """Return the channels that never change; for a single frame, the channels at 0."""
     if len(take.times) == 1:
         return {name for name, values in take.channels.items() if not values.any()}

@@ -128,7 +128,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
     asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
     refiner = refiner_for(scene, asked, attributes=_attributes_of(scene))
-    plug_ins = plug_ins_of(*asked.on(scene.name))
+    plug_ins = plug_ins_of(*asked.for_scene(scene.name))
     with reported(plug_ins):
         stream = _stream_for(scene, renderer, refiner)
 

@@ -85,7 +85,7 @@ class Refinement:
     refiner: str | None = None  # None: the preset's refiner
     options: Mapping[str, Any] = field(default_factory=dict)  # replace the preset's
 
-    def on(self, scene: str) -> tuple[str, dict[str, Any]]:
+    def for_scene(self, scene: str) -> tuple[str, dict[str, Any]]:
         """Return the refiner's name and all its options for a scene, given the scene's name."""
         preset = PRESETS[self.preset][scene]
         name = preset.refiner if self.refiner is None else self.refiner
@@ -107,7 +107,7 @@ class Refinement:
 
     def criterion_on(self, scene: str) -> str:
         """Return the names of the criteria for a scene, joined by +."""
-        return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
+        return str(self.for_scene(scene)[1].get("criterion", PAPERS_CRITERION))
 
     @property
     def label(self) -> str:

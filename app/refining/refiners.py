@@ -41,7 +41,7 @@ def refiner_for(
     Raises UserError if the refiner refuses an option, and PlugInError if code of another package
     fails.
     """
-    name, options = refinement.on(scene.name)
+    name, options = refinement.for_scene(scene.name)
     plug_ins = plug_ins_of(name, options)
     try:
         if refinement.options:

@@ -41,7 +41,7 @@ def add_pieces(glb: Glb, scene: Scene, pieces: list[Piece], skeleton: Skeleton) 
         if piece.bone is None:
             roots.append(number)
         else:
-            skeleton.hang(number, piece.bone)
+            skeleton.add_child(number, piece.bone)
         if len(piece.targets) and len(piece.weights):
             glb.animate(number, "weights", piece.weights)
     return roots

@@ -77,7 +77,7 @@ class Skeleton:
         """Return the position of a bone's node at rest [mm], (3,); None gives the origin."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
-    def hang(self, node: int, bone: str) -> None:
+    def add_child(self, node: int, bone: str) -> None:
         """Make a node a child of a bone's node."""
         self._nodes[bone].setdefault("children", []).append(node)
 
@@ -106,7 +106,7 @@ class Skeleton:
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
             self._glb.animate(node, "rotation", rotations)
         if parent is not None:
-            self.hang(node, parent)
+            self.add_child(node, parent)
         return node
 
     def _motions(self, bone: str) -> Floats64:

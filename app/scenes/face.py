@@ -15,7 +15,7 @@ from risorius.assets.model import MASK
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.read_only import read_only
 
-from ..control_names import parted
+from ..control_names import split_side
 from ..control_names.limits import ControlValues, Limits
 from .bent_part import BentPart, FaceNow
 from .drawable import Framing, SkinImages
@@ -59,7 +59,9 @@ class FaceScene(Scene):
         self.limits = Limits(controls.limits)
         self.actions = controls.actions
         whole = controls.layers.get("Expressions", ())
-        self.expressions = tuple(name for name in whole if parted(name)[0] not in {*whole} - {name})
+        self.expressions = tuple(
+            name for name in whole if split_side(name)[0] not in {*whole} - {name}
+        )
         self._moved_by: dict[str, dict[str, float]] = {}
         self.values = self.limits.pose(controls.values)
 

@@ -34,8 +34,8 @@ def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
 
     point_count: even number of points of each rim.
     """
-    of_lids = _through(6, point_count)
-    of_lips = _through(8, point_count)
+    of_lids = _rim_weights(6, point_count)
+    of_lips = _rim_weights(8, point_count)
     rims = {bone: Rim(of_lids @ landmarks[lids], True) for bone, lids in LIDS.items()}
     return {**rims, "mouth": Rim(of_lips @ landmarks[LIPS], False)}
 
@@ -48,7 +48,7 @@ def opening_before(name: str, bone: str) -> str:
 
 
 @cache
-def _through(count: int, point_count: int) -> Floats64:
+def _rim_weights(count: int, point_count: int) -> Floats64:
     """Return weights of an opening's landmarks for the points of its rim, (point_count, count).
 
     Each half of the rim is the polynomial through its landmarks, from corner to corner.

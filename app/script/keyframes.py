@@ -84,13 +84,13 @@ def moved(
         there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
-    return _reaching(_with(script, changed), *ends), KeySet(arrived)
+    return _reaching(_with_tracks(script, changed), *ends), KeySet(arrived)
 
 
-def without(script: Script, chosen: KeySet) -> Script:
+def without_keys(script: Script, chosen: KeySet) -> Script:
     """Delete keys; raise UserError if no key would be left."""
     columns = _columns(script, chosen)
-    left = _with(
+    left = _with_tracks(
         script,
         {
             name: _picked(each, ~is_any_of(each[0], chosen.times[name]))
@@ -113,7 +113,7 @@ def eased(script: Script, chosen: KeySet, easing: str) -> Script:
         else:
             last[is_chosen] = easing_named(easing)
         changed[name] = (*columns[:-1], last)
-    return _with(script, changed)
+    return _with_tracks(script, changed)
 
 
 def raised(
@@ -138,7 +138,7 @@ def raised(
     return replace(script, poses=poses, tracks=tracks)
 
 
-def lasting(script: Script, seconds: float) -> Script:
+def with_duration(script: Script, seconds: float) -> Script:
     """Change the duration [s] of a script, which still includes all named poses."""
     ends = [pose.time for pose in script.key_poses]
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
@@ -176,7 +176,7 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     else:
         pose = Pose(time, nonzero, _easing_at(script.poses, time), None)
     poses = _joined(_pose_columns(script.poses), _pose_columns([pose]))
-    with_pose = _with(script, {POSES: poses})
+    with_pose = _with_tracks(script, {POSES: poses})
     return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
@@ -224,7 +224,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
         easing = track.easing(after[0]).name if len(after) else "smooth"
         key = Key(key_time, rounded(value), easing)
         changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.from_keys([key])))
-    return _with(script, changed)
+    return _with_tracks(script, changed)
 
 
 def _easing_at(poses: Iterable[Pose], time: float) -> str:
@@ -269,7 +269,7 @@ def _joined(there: Columns, arriving: Columns) -> Columns:
     return _picked(both, np.argsort(both[0], kind="stable"))
 
 
-def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
+def _with_tracks(script: Script, changed: Mapping[str, Columns]) -> Script:
     """Replace the keys of some tracks; remove a track without keys."""
     poses = script.poses
     tracks = dict(script.tracks)

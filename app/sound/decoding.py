@@ -17,7 +17,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..errors import UserError
-from ..extras import needed
+from ..extras import optional_import
 from ..files import read_bytes
 
 if TYPE_CHECKING:
@@ -86,7 +86,9 @@ class Peaks:
 
 def ffmpeg() -> str:
     """Return the path of ffmpeg; raise UserError if it is missing."""
-    imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
+    imageio_ffmpeg = optional_import(
+        "imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg"
+    )
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())
     except RuntimeError:

@@ -14,10 +14,11 @@ settings.py the remembered settings, including the display of the scene
 
 from typing import TYPE_CHECKING, Any
 
-from ..extras import needed
+from ..extras import optional_import
 
-needed("imgui_bundle", "the window", "window", package="imgui-bundle")  # before glfw: see gui.py
-needed("glfw", "the window", "window")
+# Before glfw, see gui.py.
+optional_import("imgui_bundle", "the window", "window", package="imgui-bundle")
+optional_import("glfw", "the window", "window")
 
 from .interface import gui  # noqa: E402 - before other modules import glfw: see gui.py
 

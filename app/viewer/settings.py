@@ -150,7 +150,7 @@ class Display(Record):
 
     def refiner_on(self, scene: Drawable) -> str:
         """Return the name of the chosen refiner for this scene."""
-        return Refinement(self.look, self.refiner).on(scene.name)[0]
+        return Refinement(self.look, self.refiner).for_scene(scene.name)[0]
 
     def choose_refiner(self, scene: Drawable, name: str) -> None:
         """Refine by another refiner, or again by the look's refiner."""
@@ -265,7 +265,7 @@ def display_of(
     else:
         display.refiner = refinement.refiner
     if refinement.options:
-        display.options[refinement.on(scene)[0]] = dict(refinement.options)
+        display.options[refinement.for_scene(scene)[0]] = dict(refinement.options)
     return display
 
 

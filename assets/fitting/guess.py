@@ -75,13 +75,13 @@ def placing(known: Known) -> Similarity:
 
     Raises AssetError if the landmarks form no face, or the mirror image of a face.
     """
-    similarity, off = _laid(known)
+    similarity, off = _landmark_similarity(known)
     right = "right is the subject's own, on your left where the face looks at you"
     most_mean_distance = 14.0  # [mm] between known landmarks and those of the built-in head
     if off.mean() > most_mean_distance:
         right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
         for pair, (a, b) in right_and_left.items():
-            other, less = _laid({**known, a: known[b], b: known[a]})
+            other, less = _landmark_similarity({**known, a: known[b], b: known[a]})
             if less.mean() <= most_mean_distance and not other.is_mirrored:
                 raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
         raise AssetError(
@@ -93,7 +93,7 @@ def placing(known: Known) -> Similarity:
     return similarity
 
 
-def _laid(known: Known) -> tuple[Similarity, Floats64]:
+def _landmark_similarity(known: Known) -> tuple[Similarity, Floats64]:
     """Find the similarity from known landmarks to built-in ones, and its errors [mm], (n,)."""
     head = load("head")
     indices = sorted(known)

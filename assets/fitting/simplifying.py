@@ -57,7 +57,7 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     is_head = (distance < head_reach)[skin.faces].any(axis=1)
     most_attempts = 8  # to get a manifold surface
     for attempt in range(most_attempts):
-        vertices, faces = unpinched(*_fewer(skin, is_head, attempt))
+        vertices, faces = unpinched(*_with_fewer_triangles(skin, is_head, attempt))
         if is_manifold(faces):
             break
     else:
@@ -70,7 +70,9 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
     return SkinPiece(vertices, faces, indices, skin.file_vertices[nearest], np.arange(0))
 
 
-def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Integers32]:
+def _with_fewer_triangles(
+    skin: SkinPiece, is_head: Flags, attempt: int
+) -> tuple[Floats64, Integers32]:
     """Simplify a skin to SIMPLIFIED triangles; returns vertices and faces.
 
     The head gets up to four fifths of these triangles, or more if the body is small. The body gets
@@ -85,7 +87,7 @@ def _fewer(skin: SkinPiece, is_head: Flags, attempt: int) -> tuple[Floats64, Int
     head_count = min(len(head), SIMPLIFIED - int(least_body))
     vertices, faces = _part_with(skin.vertices, head, head_count, attempt)
     more, body = _part_with(skin.vertices, body, SIMPLIFIED - head_count, attempt)
-    return _sewn(vertices, faces, more, body)
+    return _joined(vertices, faces, more, body)
 
 
 def _part_with(
@@ -124,7 +126,7 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     return vertices[faces.ravel()[first_corner[used]]], indices.reshape(-1, 3).astype(np.int32)
 
 
-def _sewn(
+def _joined(
     vertices: Floats64, faces: Integers32, more: Floats64, more_faces: Integers32
 ) -> tuple[Floats64, Integers32]:
     """Join two parts of a mesh along their common border."""

@@ -100,7 +100,7 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
             found[part.name] = _times(part.colours, darker ** exponents[part.name])
     for eye in eyes:
         part = _eyeball(parts, eye)
-        is_white = (_aside(part, eye) > 1.05)[:, None]
+        is_white = (_axis_distances(part, eye) > 1.05)[:, None]
         found[part.name] = _times(part.colours, np.where(is_white, darker**white_factor, 1.0))
     return tuple(
         replace(part, colours=found[part.name]) if part.name in found else part for part in parts
@@ -111,7 +111,7 @@ def _eyeball(parts: Sequence[Part], eye: Eye) -> Part:
     return next(part for part in parts if part.name == f"eyeball_{eye.name}")
 
 
-def _aside(part: Part, eye: Eye) -> Floats64:
+def _axis_distances(part: Part, eye: Eye) -> Floats64:
     """Return distances of vertices from the eye's axis [iris radii], (n,); infinite on the back."""
     off = part.vertices - eye.centre
     radius = np.linalg.norm(off[:, :2], axis=1) / eye.iris_radius
@@ -121,7 +121,7 @@ def _aside(part: Part, eye: Eye) -> Floats64:
 def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
     """Vary the iris of an eyeball: colours of its vertices, sRGB, (n, 3)."""
     light = to_linear(colours)
-    aside = _aside(part, eye)
+    aside = _axis_distances(part, eye)
     grey = light @ np.array([0.2126, 0.7152, 0.0722])
     varied = light + iris.greyness * (grey[:, None] - light)
     ring_radii = 0.45, 0.75  # in radii of the iris: the ring begins to fade, and ends

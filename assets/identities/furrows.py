@@ -52,18 +52,20 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
     spread = min(spacing, 11.0)
     middle = 0.5 * (highest + lowest) + random.uniform(-0.5, 0.5) * (spacing - spread)
     arch = 1.0 - np.exp(-((x / 16.0) ** 2)) - 0.8 * smooth_step(30.0, 58.0, np.abs(x))
-    course = lines.dip * arch + random.normal(0.0, 0.015) * x + 0.8 * _wander(45.0, x, random)
+    course = lines.dip * arch + random.normal(0.0, 0.015) * x + 0.8 * _random_curve(45.0, x, random)
     deepest = 0.44 * lines.forehead_depth * (4.5 / lines.forehead) ** 0.35  # [mm]
     found = []
     for number in range(lines.forehead):
         place = middle + (number + 0.5 - 0.5 * lines.forehead) * spread
         place += 0.17 * spread * random.uniform(-1.0, 1.0)
-        own = place + course + 0.45 * _wander(26.0, x, random)
+        own = place + course + 0.45 * _random_curve(26.0, x, random)
         shown = _shown(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
         whole = smooth_step(
             0.0,
             1.0,
-            1.0 - 0.45 * lines.broken + (0.12 + 0.4 * lines.broken) * _wander(34.0, x, random),
+            1.0
+            - 0.45 * lines.broken
+            + (0.12 + 0.4 * lines.broken) * _random_curve(34.0, x, random),
         )
         ends = random.uniform(34.0, 54.0, 2)
         reach = smooth_step(-ends[0], -ends[0] + 14.0, x) * smooth_step(ends[1], ends[1] - 14.0, x)
@@ -80,7 +82,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         width = 2.3 * random.uniform(0.85, 1.15)
         found += [Line(*part, width, 0.45 * min(spread, 9.0) + 0.4, 1.9) for part in parts]
     for _ in range(lines.fine * lines.forehead):
-        own = random.uniform(lowest, highest) + course + 0.8 * _wander(20.0, x, random)
+        own = random.uniform(lowest, highest) + course + 0.8 * _random_curve(20.0, x, random)
         centre, half = random.uniform(-35.0, 35.0), random.uniform(7.0, 18.0)
         depth = 0.1 * lines.forehead_depth * smooth_step(half, 0.3 * half, np.abs(x - centre))
         found.append(Line(own, depth, 1.2, 1.8, 0.2))
@@ -110,11 +112,11 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         own = (place + random.normal(0.0, 0.9 if lines.frown > 1 else 1.8)) * (
             1.0 + 0.02 * (y - 18.0)
         )
-        own += 0.45 * _wander(18.0, y, random)
+        own += 0.45 * _random_curve(18.0, y, random)
         low, high = random.uniform(9.0, 13.0), random.uniform(27.0, 37.0)
         ends = smooth_step(low, low + 6.0, y) * smooth_step(high, high - 9.0, y)
         factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
-        depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _wander(14.0, y, random))
+        depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _random_curve(14.0, y, random))
         found.append(Line(own, depth, 2.1, 3.7, 1.3))
     return found
 
@@ -129,13 +131,13 @@ def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
     for number in range(lines.feet):
         angle = low + (number + 0.5 + 0.25 * random.uniform(-1.0, 1.0)) * wide
         own = angle + random.normal(0.0, 0.006) * (radius - 20.0)
-        own += 0.45 * _wander(16.0, radius, random) / radius
+        own += 0.45 * _random_curve(16.0, radius, random) / radius
         start = begin + random.uniform(0.0, 3.0)
         end = begin + lines.reach * random.uniform(0.55, 1.0)
         shown = smooth_step(start - 2.0, start + 2.0, radius)
         shown = shown * smooth_step(end, start + 0.55 * (end - start), radius)
         depth = 0.36 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
-        depth *= 1.0 + 0.15 * _wander(9.0, radius, random)
+        depth *= 1.0 + 0.15 * _random_curve(9.0, radius, random)
         roll = float(np.clip(10.0 * wide, 1.4, 2.4))
         found.append(Line(own, depth, 1.05, roll, 1.2))
         if random.random() < 0.3:
@@ -146,7 +148,7 @@ def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
     return found
 
 
-def _wander(length: float, samples: Floats64, random: np.random.Generator) -> Floats64:
+def _random_curve(length: float, samples: Floats64, random: np.random.Generator) -> Floats64:
     """Draw a random curve of mean 0 and deviation 1, (s,); length: mean wavelength [mm]."""
     waves = length / np.array([0.6, 1.0, 1.7])
     begins = random.uniform(0.0, 2.0 * np.pi, 3)

@@ -88,7 +88,7 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
 
     All lengths are chosen by eye, except the height of the visible skin.
     """
-    near = _about(side, size)
+    near = _texels_around(side, size)
     texels = near.texels
     along = near.along
     places = texels.interpolate(person.vertices[person.faces])
@@ -114,7 +114,7 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     return relief_of(texels, heights, 1.0 - crease_dark * groove - below_dark * below)
 
 
-class _About(NamedTuple):
+class _EyeTexels(NamedTuple):
     """The texels around an eye, and the nearest point on the upper lid's edge for each of them.
 
     along: position of this point along the edge of the built-in head's lid, (n,), from 0 at the
@@ -166,7 +166,7 @@ def _nearest(places: Floats64, points: Floats64) -> Floats64:
 
 
 @lru_cache(maxsize=8)
-def _about(side: str, size: int) -> _About:
+def _texels_around(side: str, size: int) -> _EyeTexels:
     head = load("head")
     reach = 11.0  # [mm] around the edge of the lid, beyond all folds
     points = _edge(head.vertices, side)
@@ -183,4 +183,4 @@ def _about(side: str, size: int) -> _About:
     texels = Texels(
         texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
     )
-    return _About(texels, along[kept], edge_weights[kept])
+    return _EyeTexels(texels, along[kept], edge_weights[kept])

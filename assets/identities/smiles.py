@@ -64,13 +64,15 @@ def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
     return tuple(
         replace(
             layer,
-            rows={name: _with(row, added.get(name, {})) for name, row in layer.rows.items()},
+            rows={
+                name: _with_weights(row, added.get(name, {})) for name, row in layer.rows.items()
+            },
         )
         for layer in layers
     )
 
 
-def _with(row: Mapping[str, Any], added: Mapping[str, float]) -> Mapping[str, Any]:
+def _with_weights(row: Mapping[str, Any], added: Mapping[str, float]) -> Mapping[str, Any]:
     """Add to some weights of a row, and clip them to 0 to 1."""
     changed = {
         name: float(np.clip(row.get(name, 0.0) + more, 0.0, 1.0)) for name, more in added.items()

@@ -98,7 +98,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
         named = {cell.title: cell for cell in cells}
         truth = cells[-1]
         static = named[STATIC.title]
-        changed.append(100.0 * (named[CUBIC.title].off(static) > seen_change).mean())
+        changed.append(100.0 * (named[CUBIC.title].difference(static) > seen_change).mean())
         for variant, errors, edges in (
             (PAPER, papers_left, papers_outline),
             (CUBIC, left, outline),

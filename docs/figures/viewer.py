@@ -92,7 +92,7 @@ def landmarks(viewer: Viewer) -> None:
     assert viewer.marking_mode is not None
     marking = viewer.marking_mode.marking
     for number in FIRST:
-        marking.put(number, marking.placing.points(head.vertices[head.landmarks[number]]))
+        marking.place(number, marking.placing.points(head.vertices[head.landmarks[number]]))
     marking.note()
     marking.current = 50
     viewer.frame()

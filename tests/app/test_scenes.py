@@ -45,7 +45,7 @@ def test_a_value_beyond_its_limits_is_cut_off_from_each_door(scene, value, gain)
         (0.5 + value, "jaw_open", tracked.values(0.0, limits)),
         (value, "jaw_open", session.current),
         (gain * value, "jawOpen", recorded.values(0.0, limits)),
-        (gain * value, "jawOpen", override.over(rest)),
+        (gain * value, "jawOpen", override.applied_to(rest)),
     ):
         scene.set_controls(values)
         assert scene.values[name] == pytest.approx(min(max(asked, 0.0), 1.0), abs=2e-3)

@@ -72,7 +72,7 @@ def test_keys_go_and_are_eased_as_one_by_one(script, keys, easing):
         key_id: (*key[:-1], easing) if key_id in keys else key for key_id, key in before.items()
     }
     if not keys >= set(before):
-        left = keyframes.without(script, chosen)
+        left = keyframes.without_keys(script, chosen)
         assert dict(keys_by_id(left)) == {
             key_id: key for key_id, key in before.items() if key_id not in keys
         }

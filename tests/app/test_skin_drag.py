@@ -29,7 +29,7 @@ def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwan
     scene = session.scene
     place = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)
     finger = SkinDrag(session, Settings(), place, SIGHT, poses=True)
-    finger.to(place + np.array([0.0, up, 0.0]))
+    finger.drag_to(place + np.array([0.0, up, 0.0]))
     finger.release()
     found = {name for name, value in session.values.items() if value}
     assert any(wanted in name for name in found)
@@ -51,7 +51,7 @@ def test_a_cheek_that_is_lifted_leaves_the_lid(session):
     aside = np.linalg.norm((positions - aim)[:, :2], axis=1)
     place = positions[np.where(positions[:, 2] > aim[2] - 25.0, aside, np.inf).argmin()]
     finger = SkinDrag(session, Settings(), place, SIGHT, poses=True)
-    finger.to(place + np.array([0.0, 4.0, 0.0]))
+    finger.drag_to(place + np.array([0.0, 4.0, 0.0]))
     finger.release()
     found = {name for name, value in session.values.items() if value}
     assert "orbicularis_oculi_orbital_left" in found

@@ -64,7 +64,7 @@ def mark_first(marking):
     """Place the first five landmarks exactly, in the order of the questions."""
     for number in FIRST:
         assert marking.current == number
-        marking.put(number, marking.placing.points(true_places()[number]))
+        marking.place(number, marking.placing.points(true_places()[number]))
         marking.note()
 
 
@@ -118,7 +118,7 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     """
     target = tmp_path / "half.json"
     for number in FIRST[:3]:
-        marking.put(number, marking.placing.points(true_places()[number]))
+        marking.place(number, marking.placing.points(true_places()[number]))
         marking.note()
     assert marking.unsaved
     marking.file = target
@@ -133,7 +133,7 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     assert again.current == FIRST[3]
     assert not again.unsaved
     for number in FIRST[3:]:
-        again.put(number, again.placing.points(true_places()[number]))
+        again.place(number, again.placing.points(true_places()[number]))
         again.note()
     again.save()
     third = Marking(marking.path, FileDialogs())

@@ -145,8 +145,8 @@ def test_points_are_mirrored():
     landmarks[54] = (30.0, -60.0, 5.0)
     landmarks[48] = (-30.0, -60.0, 5.0)
     point = LandmarkPoint(((54, 1.0),), (2.0, 3.0, 4.0))
-    assert np.array_equal(point.on(landmarks, Side.LEFT), [32.0, -57.0, 9.0])
-    assert np.array_equal(point.on(landmarks, Side.RIGHT), [-32.0, -57.0, 9.0])
+    assert np.array_equal(point.position(landmarks, Side.LEFT), [32.0, -57.0, 9.0])
+    assert np.array_equal(point.position(landmarks, Side.RIGHT), [-32.0, -57.0, 9.0])
 
 
 def test_rig_moves_with_the_head(head):

@@ -193,7 +193,7 @@ def test_skin_hangs_on_sphincters_by_the_formula(placed, model):
             continue
         muscle = at.muscle
         lateral, up, down = muscle.radii
-        middle = (muscle.shape or muscle.centre).on(model.landmarks, at.side)
+        middle = (muscle.shape or muscle.centre).position(model.landmarks, at.side)
         aside, height, _ = (x - middle).T
         rho = np.hypot(aside / lateral, height / np.where(height > 0.0, up, down))
         outside, inside = muscle.edge

@@ -197,7 +197,7 @@ class LabelledRows:
         self.hints = dict(hints)
 
     @property
-    def second(self) -> float:
+    def second_column(self) -> float:
         """Left end of the second column, from the left edge of the panel [window units]."""
         return float(self._share * imgui.get_window_width())
 
@@ -206,7 +206,7 @@ class LabelledRows:
         imgui.align_text_to_frame_padding()
         imgui.text(readable(label))
         self.end(label)
-        imgui.same_line(self.second)
+        imgui.same_line(self.second_column)
         imgui.set_next_item_width(-1.0)
 
     def end(self, label: str) -> None:

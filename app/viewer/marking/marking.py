@@ -182,7 +182,7 @@ class Marking:
 
     # Changes of the marks
 
-    def put(self, number: int, point: Floats64) -> None:
+    def place(self, number: int, point: Floats64) -> None:
         """Place a landmark at a visible point of the mesh; `note` completes the change."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
@@ -207,13 +207,13 @@ class Marking:
         self._note()
         return "All points are guessed; drag wrong points to their place"
 
-    def go(self, step: int) -> None:
+    def step(self, step: int) -> None:
         """Go to the next landmark in the order of marking, or with -1 to the previous landmark."""
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
     def undo(self, changes: int = 1) -> None:
         """Undo this many changes, including turns of the mesh; -1 redoes one change."""
-        self.marks, placing = self.history.go(self.history.place - changes)
+        self.marks, placing = self.history.restore(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)
         asked = self.marks.next_landmark

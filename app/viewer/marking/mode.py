@@ -107,7 +107,7 @@ class MarkingMode:
 
     def _step(self, direction: int) -> None:
         """Go to another landmark; if it is hidden, turn the camera to its side."""
-        self.marking.go(direction)
+        self.marking.step(direction)
         number = self.marking.current
         camera = self.view.camera
         if number not in self.view.places():

@@ -115,7 +115,7 @@ class MarkingMouse(CameraMouse):
         point = self._skin_under(io)
         if point is None:
             return False
-        marking.put(marking.current, point)
+        marking.place(marking.current, point)
         is_seen = marking.current in self._seen.places()
         marking.marks = marking.marks if is_seen else before
         return is_seen

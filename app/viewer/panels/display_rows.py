@@ -51,9 +51,9 @@ class DisplayRows(LabelledRows):
         """Draw a row with a list for a field of the display."""
         display = self._settings.display
         name = FIELDS[label]
-        self.put(label, getattr(display, name), choices, partial(setattr, display, name))
+        self.choice_row(label, getattr(display, name), choices, partial(setattr, display, name))
 
-    def put(
+    def choice_row(
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], Message]
     ) -> None:
         """Draw a row with a list, and call `put` with the user's choice."""

@@ -16,8 +16,8 @@ from imgui_bundle import imgui
 from ...control_names import (
     OPPOSITE,
     is_found,
-    parted,
     readable,
+    split_side,
     title_of,
     twin_of,
     words_of_group,
@@ -71,11 +71,11 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
     known = set(names)
     rows = []
     for name in names:
-        base, side = parted(name)
+        base, side = split_side(name)
         twin = twin_of(name)
         if not side:
             sides = (f"{name}_right", f"{name}_left")
-            if parted(twin)[0] == name != twin:  # a control for one side, such as a wink
+            if split_side(twin)[0] == name != twin:  # a control for one side, such as a wink
                 rows.append(Row(name, (twin, name)))
             elif not known.issuperset(sides):
                 rows.append(Row(name, (name,)))
@@ -152,7 +152,7 @@ class ControlRows:
             if index:
                 imgui.same_line()
             limits = session.controls.limits[name]
-            side = parted(name)[1].strip("_")[:1].upper()
+            side = split_side(name)[1].strip("_")[:1].upper()
             is_of_both = not side and len(row.sides) > 0
             mark = "" if is_of_both or len(names) == 1 else side or "L"
             slid = slider(

@@ -106,7 +106,7 @@ class MechanismPanel:
         stage = self._stage
         self._rows.switch("Refine")
         look = display.preset_as_changed(stage.scene)
-        self._rows.put("Look", look, tuple(PRESETS), display.choose_preset)
+        self._rows.choice_row("Look", look, tuple(PRESETS), display.choose_preset)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
         for name, option in self._options().items():
             if option.kind in NUMBERS and (name not in THRESHOLDS or has_thresholds):
@@ -116,7 +116,7 @@ class MechanismPanel:
             looks = {STATIC_LABEL: STATIC} | {look: look for look in PRESETS}
             beside = STATIC_LABEL if display.beside == STATIC else display.beside
             put = lambda label: setattr(display, "beside", looks[label])  # noqa: E731
-            self._rows.put("Beside", beside, tuple(looks), put)
+            self._rows.choice_row("Beside", beside, tuple(looks), put)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count
@@ -129,7 +129,7 @@ class MechanismPanel:
         scene = self._stage.scene
         names = [name for name in refine.refiners.available() if name != STATIC]
         put = partial(self._display.choose_refiner, scene)
-        self._rows.put("Refiner", self._display.refiner_on(scene), names, put)
+        self._rows.choice_row("Refiner", self._display.refiner_on(scene), names, put)
         for name, option in self._options().items():
             if option.kind not in NUMBERS:
                 self._draw_option(name, option)
@@ -179,11 +179,11 @@ class MechanismPanel:
             has_finer = can_detail(scene)
             allowed = [word for word in choices_of(name) if word != DETAIL or has_finer]
             if allowed:
-                self._rows.put(label, str(value), allowed, put)
+                self._rows.choice_row(label, str(value), allowed, put)
         else:
             choices = option.choices
             present = next(word for word, each in choices.items() if each == value)
-            self._rows.put(label, present, list(choices), lambda word: put(choices[word]))
+            self._rows.choice_row(label, present, list(choices), lambda word: put(choices[word]))
 
     def _defaults(self) -> dict[str, Any]:
         return {name: option.default for name, option in self._options().items()}
@@ -195,20 +195,20 @@ class MechanismPanel:
         is_textured = skin.albedo is not None
         possible = [name for name, (is_picture, _) in SKINS.items() if is_textured >= is_picture]
         present = display.skin if display.skin in possible else possible[0]
-        self._rows.put("Skin", present, possible, partial(setattr, display, "skin"))
+        self._rows.choice_row("Skin", present, possible, partial(setattr, display, "skin"))
         if self._stage.scene.skin.wrinkles is not None:
             now = display.wrinkles
             display.wrinkles = self._rows.slider_row("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._rows.switch("Wireframe")
         self._rows.switch("Colour by splits")
-        imgui.same_line(self._rows.second)
+        imgui.same_line(self._rows.second_column)
         self._rows.switch("Wires of splits")
 
     def _draw_anatomy(self) -> None:
         display = self._display
         for index, name in enumerate(STRUCTURES):
             if index:
-                imgui.same_line(self._rows.second)
+                imgui.same_line(self._rows.second_column)
             is_on = name in display.overlays
             self._rows.check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
         if display.anatomy.structures:
@@ -227,7 +227,7 @@ class MechanismPanel:
         rows = {**phases, "Panels and pauses": rest, "Frame": times.frame}
         for label, milliseconds in rows.items():
             imgui.text(label)
-            imgui.same_line(self._rows.second)
+            imgui.same_line(self._rows.second_column)
             imgui.text(f"{milliseconds:.2f}")
             if label == readable("simulation") and steps:
                 imgui.same_line()

@@ -179,7 +179,7 @@ class Mouse(CameraMouse):
         elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
             across = self._view.camera.axes()[2]
             to = self._ray(io).at_depth_of(self.skin_drag.point, across)
-            self._messages.attempt(partial(self.skin_drag.to, to))
+            self._messages.attempt(partial(self.skin_drag.drag_to, to))
 
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:

@@ -19,7 +19,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.rays import PARALLEL, crossings
 
-from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
+from ...control_names import OPPOSITE, TURNED, plain_name, split_side, twin_of
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
@@ -111,7 +111,7 @@ class SkinDrag:
         self._own: dict[str, float] = {}  # values of solved controls before the drag
         self._pull: sim.Pull | None = None  # made at the first motion, so that a click is fast
 
-    def to(self, point: Floats64) -> Message:
+    def drag_to(self, point: Floats64) -> Message:
         """Drag the skin to a point, or toward it if it is too far; called once in each frame."""
         self.offset = offset = point - self.point
         if not self._candidates:
@@ -165,7 +165,7 @@ class SkinDrag:
                 self._session.set(name, value)
         if not solved:
             return "No muscle moves the skin this way; with Ctrl it is pulled without muscles"
-        moved = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
+        moved = (f"{plain_name(*names)} {value:.2f}" for names, value in pull.changes.items())
         return f"{', '.join(moved).capitalize()}; {pull.remaining:.1f} mm short of the mouse"
 
 
@@ -203,10 +203,10 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
         is_whole = f"{name}_left" in lowest
         if is_whole or name.startswith(unpulled_prefixes):
             continue
-        if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):
+        if linked and is_aside and (name in TURNED or split_side(name)[0] in OPPOSITE):
             continue
         is_pair = linked and twin != name and values[name] == values[twin]
-        if not is_pair or parted(name)[0] in OPPOSITE:
+        if not is_pair or split_side(name)[0] in OPPOSITE:
             found.append((name,))
         elif name < twin:
             found.append((name, twin))

@@ -97,7 +97,7 @@ class SceneView:
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 
     @property
-    def letter(self) -> float:
+    def letter_size(self) -> float:
         """Size of letters in the window [pixels]; captions have at least this size."""
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
@@ -209,7 +209,7 @@ class Stage:
         places = [each.seen for each in viewports]
         has_splits = any(each.drawn is not self.static for each in viewports)
         has_bar = view.display.splits and has_splits
-        return labels(texts, places, has_bar=has_bar, least=view.letter)
+        return labels(texts, places, has_bar=has_bar, least=view.letter_size)
 
     def _lit_muscles(self, view: SceneView) -> list[render.Lines]:
         """Return fibres of the pointed control's muscles, or faint fibres of the hovered muscle."""

@@ -40,7 +40,7 @@ class SceneControls:
             if title in scene.groups and title != BOTH_SIDES
         }
 
-    def alone(self, name: str) -> ControlValues:
+    def solo_pose(self, name: str) -> ControlValues:
         """Return the pose with this control at its highest value, and all others at 0."""
         return self.limits.pose({name: self.limits[name][1]})
 
@@ -73,7 +73,7 @@ class LiveOverride:
         """Whether any control is overridden."""
         return self._share > 0.0
 
-    def over(self, values: ControlValues) -> ControlValues:
+    def applied_to(self, values: ControlValues) -> ControlValues:
         """Return the overridden values; a weighted mean of two values stays within their limits."""
         if not self._share:
             return values
@@ -170,13 +170,13 @@ class History(Generic[State]):
         return self.place < len(self._states) - 1
 
     @property
-    def present(self) -> State:
+    def current(self) -> State:
         """The state that was noted or restored last."""
         return self._states[self.place]
 
     def note(self, state: State) -> None:
         """Add a changed state, and drop undone states; an equal state is ignored."""
-        if state == self.present:
+        if state == self.current:
             return
         self._states[self.place + 1 :] = [state]
         del self._states[:-100]  # number of kept states
@@ -186,7 +186,7 @@ class History(Generic[State]):
         """Replace the current state without a step of undo."""
         self._states[self.place] = state
 
-    def go(self, place: int) -> State:
+    def restore(self, place: int) -> State:
         """Restore the state with this index, or with the nearest index."""
         self.place = min(max(place, 0), len(self._states) - 1)
-        return self.present
+        return self.current

@@ -69,12 +69,12 @@ class Session:
 
     def toggle_solo(self, name: str) -> None:
         """Show this control alone at its limit; if that is already so, show the neutral face."""
-        pose = self.scene.limits.pose({}) if self.is_solo(name) else self.controls.alone(name)
+        pose = self.scene.limits.pose({}) if self.is_solo(name) else self.controls.solo_pose(name)
         self.set_pose(pose, is_unsaved=False)
 
     def is_solo(self, name: str) -> bool:
         """Whether only this control is set, and at its limit."""
-        return self.values == self.controls.alone(name)
+        return self.values == self.controls.solo_pose(name)
 
     def neutral(self) -> None:
         """Set all controls to zero; the skin swings back."""
@@ -100,21 +100,21 @@ class Session:
     @property
     def current(self) -> ControlValues:
         """The value of each control by hand or script, overridden by a live face."""
-        return self.live_override.over(self.values)
+        return self.live_override.applied_to(self.values)
 
     @property
     def differing(self) -> frozenset[str]:
         """The controls whose values by hand differ from the script; computed from every track."""
         if self.is_following or self.is_recording:
             return frozenset()
-        return frozenset(self._away(self.values))
+        return frozenset(self._differing_from(self.values))
 
     @property
     def touched(self) -> frozenset[str]:
         """The controls moved by hand or by a live face since the last key."""
-        return frozenset(self._moved.union(self._away(self.current)))
+        return frozenset(self._moved.union(self._differing_from(self.current)))
 
-    def _away(self, values: ControlValues) -> list[str]:
+    def _differing_from(self, values: ControlValues) -> list[str]:
         return keyframes.differing(self.script, self.time, values)
 
     # Undo
@@ -129,17 +129,17 @@ class Session:
             return  # a recording is one change, noted at its end
         is_touched, self._is_touched = self._is_touched, False
         if is_touched and self.is_keying and self.differing:
-            self._key(self.values, self._moved.union(self._away(self.values)))
+            self._key(self.values, self._moved.union(self._differing_from(self.values)))
         self.history.note(self._document())
 
     @property
     def can_undo(self) -> bool:
         """Whether there is something to undo."""
-        return self.history.can_undo or self._document() != self.history.present
+        return self.history.can_undo or self._document() != self.history.current
 
     def undo(self) -> None:
         """Undo the changes since the last noted state; without changes, undo that state."""
-        self.go_to(self.history.place - (self._document() == self.history.present))
+        self.go_to(self.history.place - (self._document() == self.history.current))
 
     def redo(self) -> None:
         """Redo the last undone change."""
@@ -148,7 +148,7 @@ class Session:
     def go_to(self, place: int) -> None:
         """Restore the state with this index in the history."""
         self._refuse_while_recording()
-        document = self.history.go(place)
+        document = self.history.restore(place)
         self.is_playing = self._is_touched = False
         self._moved.clear()
         self.script = document.script

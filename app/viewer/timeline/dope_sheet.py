@@ -307,7 +307,7 @@ class DopeSheet:
             "box": lambda: self._select_box(io, drag),
             "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
             "end": lambda: session.edit(
-                keyframes.lasting(drag.script, axis.time(x)), is_done=False
+                keyframes.with_duration(drag.script, axis.time(x)), is_done=False
             ),
             "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
             "slope": lambda: self._bend(y, drag),

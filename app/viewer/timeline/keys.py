@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from ...control_names import called
+from ...control_names import plain_name
 from ...errors import UserError
 from ...script import Channel, Script, keyframes
 from ...script.key_sets import NO_KEYS, KeySet
@@ -53,7 +53,7 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
         for name in script.posed_names:
             channel = script.posed_channel(name)
             above = (whole_poses_row,)
-            row = Track(f"pose {name}", called(name), poses, channel, name, POSES, above)
+            row = Track(f"pose {name}", plain_name(name), poses, channel, name, POSES, above)
             rows.append(row)
     tracks_row = "Tracks"  # name of a row
     if script.tracks:
@@ -70,7 +70,7 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
             alone = KeySet({name: times[name]})
             channel = script.tracks[name]
             sign = "+ " if name in script.posed_names else ""  # the track adds to the poses
-            label = f"{sign}{called(name)}"
+            label = f"{sign}{plain_name(name)}"
             rows.append(Track(f"track {name}", label, alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
 
@@ -83,7 +83,7 @@ def movers_of(script: Script, name: str) -> str:
 
 def listed(names: Collection[str]) -> str:
     """Return the name of one control in words, or the number of several controls."""
-    return called(min(names)) if len(names) == 1 else counted(len(names), "control")
+    return plain_name(min(names)) if len(names) == 1 else counted(len(names), "control")
 
 
 class KeySelection:
@@ -141,7 +141,7 @@ class KeySelection:
     def delete_keys_of(self, names: Collection[str]) -> Message:
         """Delete the keys at the current time in the tracks of these controls."""
         session = self._session
-        session.edit(keyframes.without(session.script, self.keys_of(names)))
+        session.edit(keyframes.without_keys(session.script, self.keys_of(names)))
         return f"{listed(names)}: key deleted; [Undo] reverts this"
 
     def clear_tracks_of(self, names: Collection[str]) -> Message:
@@ -149,13 +149,13 @@ class KeySelection:
         session = self._session
         tracks = session.script.tracks
         deleted = KeySet({name: tracks[name].times for name in names if name in tracks})
-        session.edit(keyframes.without(session.script, deleted))
+        session.edit(keyframes.without_keys(session.script, deleted))
         return f"{listed(names)}: track cleared; [Undo] reverts this"
 
     def delete(self) -> Message:
         """Delete the selected keys."""
         keys = counted(len(self.keys), "key")
-        self._session.edit(keyframes.without(self._session.script, self.keys))
+        self._session.edit(keyframes.without_keys(self._session.script, self.keys))
         return f"{keys} deleted; [Undo] reverts this"
 
     def copy(self) -> Message:

@@ -31,7 +31,7 @@ def open_window(
     """
     settings = splash.settings
     complaint = splash.complaint
-    scene = splash.during(partial(_ready_scene, script, head, display or settings.display))
+    scene = splash.run(partial(_ready_scene, script, head, display or settings.display))
     with contextlib.ExitStack() as stack:
         stack.push(splash)
         if display is not None:
@@ -76,5 +76,5 @@ def _refine_once(scene: Scene, display: Display) -> None:
     """Refine the current scene; raises UserError if the refiner refuses it, or fails."""
     refinement = display.refinement_on(scene)
     refiner = refiner_for(scene, refinement)
-    with reported(plug_ins_of(*refinement.on(scene.name))):
+    with reported(plug_ins_of(*refinement.for_scene(scene.name))):
         refiner.refine(scene.positions, view=refine.View(scene.framing.focus + 400.0))

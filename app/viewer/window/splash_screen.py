@@ -59,7 +59,7 @@ class SplashScreen(logging.Handler):
         self.LOG.removeHandler(self)
         self.surface.close()
 
-    def during(self, work: Callable[[], Result]) -> Result:
+    def run(self, work: Callable[[], Result]) -> Result:
         """Do long work while the window responds; if the work fails, the window closes."""
         thread = ThreadPoolExecutor(1)
         outcome = thread.submit(work)
