@@ -57,7 +57,12 @@ class Row:
         whole: the control for both sides, or ""; has a bar if no side has one, or if it is not 0.
         """
         is_linked = linked and values[sides[0]] == values[sides[1]]
-        apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
+        if not is_linked:
+            apart: tuple[str, ...] = sides
+        elif values[sides[1]] or not whole:
+            apart = sides[1:]
+        else:
+            apart = ()
         first = (whole,) if whole and (not apart or values[whole]) else ()
         return cls(label, (*first, *apart), sides, is_linked)
 

@@ -94,4 +94,8 @@ class PeopleList:
 
 def in_words(who: int | str) -> str:
     """Describe a person in the list, such as "Person 7, woman, about 60"."""
-    return "Own head" if who == OWN else "Built-in" if who == BUILT_IN else head_in_words(who)
+    if who == OWN:
+        return "Own head"
+    if who == BUILT_IN:
+        return "Built-in"
+    return head_in_words(who)
