@@ -217,7 +217,7 @@ class RingMuscle(Muscle):
     """A sphincter or a part of one: skin on an elliptic ring moves to a centre, and outward."""
 
     centre: Point = MOUTH
-    shape: Point | None = None  # middle of the ring
+    shape: Point | None = None  # middle of the ellipse; None: `centre`
     radii: Annotated[Triple, Within(1.0, 100.0)] = (20.0, 10.0, 10.0)
     edge: Annotated[Pair, Within(0.05, 10.0)] = (0.7, 1.0)  # falloff outside, inside
     contraction: Annotated[Triple, Within(-2.0, 2.0)] = (0.2, 0.2, 0.2)

@@ -163,8 +163,8 @@ class Drawing(Subject):
         is_flag=False,
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
-        help="Draw muscles, skull or both under translucent skin. opacity=0..1: of the skin, 0.25 "
-        "by default. dissect=left or right: only this side of the subject has translucent skin.",
+        help="Draw muscles, skull or both under translucent skin. opacity=0..1: opacity of the "
+        "skin, 0.25 by default. dissect=left or right: only this side of the subject has translucent skin.",
     )
     style_settings: tuple[str, ...] = option(
         "--style",

@@ -198,7 +198,7 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     followed_angles = (45.0, 32.0)
     lost_angles = (65.0, 45.0)
     share = math.prod(map(_followed, aside, followed_angles, lost_angles))
-    eye_angle = 10.0  # [degrees] from straight ahead that only the eyes turn
+    eye_angle = 10.0  # [degrees] off straight ahead, up to which the head stays
     head_fraction = 0.5  # share of the angle beyond it that the head turns
     turn, rise = (share * head_fraction * _excess(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(face.bone_transforms()["cranium"])

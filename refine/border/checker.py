@@ -188,7 +188,7 @@ def _check_cover(
 ) -> None:
     u = corners[:, 1] - corners[:, 0]
     v = corners[:, 2] - corners[:, 0]
-    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # in squares of parts; PARTS^2 of the whole
+    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # PARTS^2 for the whole triangle
     _require_all(
         areas > 0,
         "a subtriangle has the orientation of its input triangle and an area "

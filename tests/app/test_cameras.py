@@ -41,7 +41,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
 def test_wrong_cameras_are_refused(scene, text):
-    """Unknown names and numbers are refused with the allowed ones; no word is the usual view."""
+    """Unknown names and numbers are refused with the allowed ones; no word: the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
         return

@@ -124,7 +124,7 @@ class ScriptCommands:
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
         if is_pose(script) and not self._session.work.has_unsaved_pose:
-            return show()  # a pose replaces no other unsaved work
+            return show()  # opening a pose loses no unsaved script
         return self._question.before("Open", show)
 
     def _check(self, script: Script) -> None:
