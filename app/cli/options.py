@@ -164,7 +164,8 @@ class Drawing(Subject):
         flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
         help="Draw muscles, skull or both under translucent skin. opacity=0..1: opacity of the "
-        "skin, 0.25 by default. dissect=left or right: only this side of the subject has translucent skin.",
+        "skin, 0.25 by default. dissect=left or right: only this side of the subject has "
+        "translucent skin.",
     )
     style_settings: tuple[str, ...] = option(
         "--style",
