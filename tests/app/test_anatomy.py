@@ -152,7 +152,10 @@ def test_a_users_head_has_muscles_and_a_skull(tmp_path):
 
 
 def test_the_coarse_head_has_muscles_and_a_skull():
-    """The coarse head has muscles and a skull, because it has the same anatomical points."""
+    """The coarse head has muscles and a skull, because it has the same anatomical points.
+
+    The throat ends above the edge of the jaw beside it; it hung down as a dark flap.
+    """
     scene = FaceScene(coarse_head())
     parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
     low = scene.rest_positions.min(axis=0) - 12.0
@@ -161,6 +164,9 @@ def test_the_coarse_head_has_muscles_and_a_skull():
         points = parts[name].vertices
         assert np.isfinite(points).all()
         assert ((low < points) & (points < high)).all()
+    throat = parts["throat"].vertices
+    jaw = parts["skull_mandible"].vertices
+    assert throat[:, 1].min() > jaw[jaw[:, 2] < throat[:, 2].max(), 1].min()
 
 
 @pytest.mark.slow
