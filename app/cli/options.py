@@ -94,8 +94,8 @@ class Subject:
     )
     landmarks: Path | None = option(
         type=PATH,
-        help="The 68 iBug landmarks of --head, as JSON. Heads of MakeHuman and ICT-FaceKit need "
-        "none.",
+        help="The 68 iBug landmarks of --head, as JSON. Heads of MakeHuman, ICT-FaceKit and "
+        "MediaPipe need none.",
     )
     look: str = option(
         type=click.Choice(list(PRESETS)),

@@ -24,8 +24,8 @@ class Rigging:
 
     landmarks: Path | None = option(
         type=PATH,
-        help="The 68 iBug landmarks of HEAD, as JSON. Heads of MakeHuman and ICT-FaceKit need "
-        "none.",
+        help="The 68 iBug landmarks of HEAD, as JSON. Heads of MakeHuman, ICT-FaceKit and "
+        "MediaPipe need none.",
     )
     name: str = option(
         "--as",
