@@ -154,7 +154,8 @@ def test_a_users_head_has_muscles_and_a_skull(tmp_path):
 def test_the_coarse_head_has_muscles_and_a_skull():
     """The coarse head has muscles and a skull, because it has the same anatomical points.
 
-    The throat ends above the edge of the jaw beside it; it hung down as a dark flap.
+    The throat ends by the edge of the jaw beside it, below which it hung as a dark flap, and in
+    front of the spine, of which a vertebra showed through it.
     """
     scene = FaceScene(coarse_head())
     parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
@@ -166,7 +167,9 @@ def test_the_coarse_head_has_muscles_and_a_skull():
         assert ((low < points) & (points < high)).all()
     throat = parts["throat"].vertices
     jaw = parts["skull_mandible"].vertices
-    assert throat[:, 1].min() > jaw[jaw[:, 2] < throat[:, 2].max(), 1].min()
+    assert throat[:, 1].min() > jaw[jaw[:, 2] < throat[:, 2].max(), 1].min() - 4.0
+    spine = parts["skull_spine"].vertices
+    assert throat[:, 2].min() > spine[spine[:, 1] > throat[:, 1].min(), 2].max() + 0.5
 
 
 @pytest.mark.slow
