@@ -97,6 +97,12 @@ def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high
         assert found[forehead(scene)].max() < 0.05
 
 
+def test_a_mouth_moved_sideways_makes_no_bumps_on_the_chin(scene, wrinkling):
+    """In `mouthLeft` the dimples of the chin are shallow; their amount once was 0.95."""
+    found = amounts(scene, wrinkling, mouthLeft=1.0)
+    assert found[region(scene, (0, -102, 90), (14, -90, 120)), 0].max() < 0.4
+
+
 def test_furrows_of_age_are_pulled_flat():
     """A kiss stretches the fold beside the nose flat; the wrinkled lips keep their furrows."""
     person = person_called("maria")
