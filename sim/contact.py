@@ -69,19 +69,24 @@ class Grip(NamedTuple):
     """How firmly the lips stick together now."""
 
     stiffness: float  # factor of the stiffness of each pair; 0 = open
+    gap_stiffness: float  # the same against a gap, as lips that slide on each other stay closed
     overlap: float  # mm by which the lips are pressed into each other
 
     @classmethod
-    def from_seal(cls, strength: float, activity: float) -> Grip:
+    def from_seal(cls, strength: float, activity: float, slid: float = 1.0) -> Grip:
         """Grip of a seal with `strength` 0 (broken) .. 1, under muscles with `activity` 0 .. 1.
 
         At full strength the seal is stronger than every muscle. It must weaken early, or the mouth
-        would open abruptly.
+        would open abruptly. slid: a factor of the strength, except against a gap; lips whose factor
+        is 0 are free to slide on each other.
         """
         unbroken_seal = 100.0  # factor of the rig's seal in a closed mouth: gaps below 0.1 mm
-        stiffness = strength**5 / (1.0 - strength + 1.0 / unbroken_seal)
+        stiffness, gap_stiffness = (
+            each**5 / (1.0 - each + 1.0 / unbroken_seal) for each in (slid * strength, strength)
+        )
         full_press_activity = 0.25  # activity from which they overlap in full
-        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / full_press_activity, 1.0))
+        press = min(activity / full_press_activity, 1.0)
+        return cls(stiffness, gap_stiffness, PRESSED_OVERLAP * slid * strength * press)
 
 
 SEALED = Grip.from_seal(1.0, 0.0)
@@ -94,19 +99,35 @@ def pair_lips(
     x = surface.positions
     line = mouth_line(landmarks)
     lip_edge = 5.0  # mm around the mouth line in which lip vertices are looked for
-    at_edge = polyline_distance(x, line) < lip_edge
+    off_line = polyline_distance(x, line)
+    at_edge = off_line < lip_edge
     width = abs(line[-1, 0] - line[0, 0])
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * width
     own_side_level = 0.1  # value of the lip side field: nearer to the corner the lips are one
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
+    least_reach = _least_reach(surface, off_line)
     pairs = []
     for own, other, below in ((lower, upper, 1.0), (upper, lower, -1.0)):
         for i in own.tolist():
-            found = _point_beside(x, i, other)
+            found = _point_beside(x, i, other, least_reach[i])
             if found is not None:
                 pairs.append(_LipPair(i, *found, below))
     return _lip_pairs(surface, pairs, seal)
+
+
+def _least_reach(surface: SkinSurface, off_line: Floats64) -> Floats64:
+    """Distance to the other lip up to which a vertex forms a pair in any case [mm], shape (V,).
+
+    Lips of a coarse mesh touch less exactly, so it is the length of the vertex's edges. It is half
+    of that where one of them leads to the mouth line. off_line: distance from this line [mm], (V,).
+    """
+    i, j = surface.edges.T
+    nearer = off_line[i] - off_line[j]
+    leads_there = np.abs(nearer) > 0.5 * surface.lengths
+    reach = surface.spacing
+    reach[np.where(nearer > 0.0, i, j)[leads_there]] *= 0.5
+    return reach
 
 
 class _LipPair(NamedTuple):
@@ -119,9 +140,12 @@ class _LipPair(NamedTuple):
 
 
 def _point_beside(
-    x: Floats64, vertex: int, other: Integers64
+    x: Floats64, vertex: int, other: Integers64, least_reach: float
 ) -> tuple[tuple[int, int], float] | None:
-    """The other lip's point beside a lip's vertex: a mix of the nearest vertices right and left."""
+    """The other lip's point beside a lip's vertex: a mix of the nearest vertices right and left.
+
+    None if it is too far, and farther than `least_reach` [mm].
+    """
     here = x[vertex]
     reach = np.linalg.norm(x[other] - here, axis=1)
     across = x[other, 0]
@@ -138,7 +162,7 @@ def _point_beside(
     mixed = weight * x[a] + (1.0 - weight) * x[b]
     _, gap, overhang = np.abs(mixed - here)
     most_overhang = 3.0  # mm that one lip's edge may lie in front of the other's
-    if gap >= PAIR_GAP or overhang >= most_overhang:
+    if gap >= max(PAIR_GAP, least_reach) or overhang >= max(most_overhang, least_reach):
         return None
     return (a, b), weight
 

@@ -61,15 +61,16 @@ class FaceModel(Foundation):
         closed: how far the lips are kept together over an open jaw, 0..1.
         """
         if not len(self.skin.lips.vertex):
-            return Grip(0.0, 0.0)
+            return Grip(0.0, 0.0, 0.0)
         muscles = self.muscles
         strength = max(0.0, 1.0 - (1.0 - closed) * jaw[0] / SEAL_BROKEN_BY_JAW)
         if strength == 0.0:
-            return Grip(0.0, 0.0)
-        strength *= 1.0 - SEAL_LOST_BY_THRUST * max(jaw[1], 0.0)
+            return Grip(0.0, 0.0, 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
+        slid = 1.0 - SEAL_LOST_BY_THRUST * max(jaw[1], 0.0)
+        slid *= float((1.0 - activation * muscles.slides_lips).prod())
         activity = float((activation * muscles.reaches_lips).max(initial=max(map(abs, jaw))))
-        return Grip.from_seal(strength, activity)
+        return Grip.from_seal(strength, activity, slid)
 
 
 def build_face_model(head: Any) -> FaceModel:

@@ -70,6 +70,7 @@ class MuscleForces:
 
     names: tuple[str, ...]  # names of the M muscles' controls
     opens_lips: Floats64  # (M,)
+    slides_lips: Floats64  # (M,)
     reaches_lips: Floats64  # (M,) greatest attachment weight at a lip edge, 0..1
     bundle: FibreBundle
     stack: Stack
@@ -180,6 +181,7 @@ def build_muscle_forces(
     return MuscleForces(
         names=tuple(at.name for at in placed),
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
+        slides_lips=np.array([at.muscle.slides_lips for at in placed], dtype=np.float64),
         reaches_lips=np.array(
             [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
         ),

@@ -194,6 +194,7 @@ class Muscle(Record):
         "none"  # which lip it may move
     )
     opens_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # share by which it breaks the lip seal
+    slides_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # the same, but no gap opens
     lies_on: tuple[str, ...] = ()  # muscles beneath, which carry it
 
 

@@ -201,7 +201,7 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
     lips = skin.lips
     grip = tick.grip
     h = tick.h
-    if grip.stiffness <= 0.0:
+    if grip.gap_stiffness <= 0.0:
         return
     x = state.x
     v = state.v
@@ -217,10 +217,13 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         for k in range(3):
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
+            firmness = grip.stiffness
             if k == 1:
                 apart -= lips.below[p] * grip.overlap
+                if lips.below[p] * apart < 0.0:
+                    firmness = grip.gap_stiffness
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
-            give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
+            give = h * inverse * firmness * lips.seal[p] * SEAL_AXES[k]
             slowed = (speed - give * apart) / (1.0 + h * give)
             impulse = (slowed - speed) / inverse
             change[i, k] += impulse / mass[i]

@@ -47,6 +47,14 @@ class SkinSurface:
         """Number of vertices."""
         return len(self.positions)
 
+    @property
+    def spacing(self) -> Floats64:
+        """Mean length of the edges at each vertex [mm], shape (V,); 0 without edges."""
+        ends = self.edges.ravel()
+        total = np.bincount(ends, np.repeat(self.lengths, 2), self.vertex_count)
+        spacing: Floats64 = total / np.maximum(np.bincount(ends, minlength=self.vertex_count), 1)
+        return spacing
+
     @cached_property
     def tree(self) -> scipy.spatial.cKDTree:
         """Search tree for the vertices near a point."""

@@ -24,16 +24,18 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
     assert eyes.deepest(sunk) == approx(0.5)
 
 
-@pytest.mark.parametrize(("above", "below"), [(17, 9), (9, 17), (9, 9)])
-def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
+@pytest.mark.parametrize(
+    ("above", "below", "gap"), [(17, 9, 1.0), (9, 17, 1.0), (9, 9, 1.0), (9, 9, 4.0)]
+)
+def test_every_vertex_of_either_lip_is_in_a_pair(above, below, gap):
     """Every vertex of both lips is in a pair, and both lips are held equally.
 
-    One lip may have twice as many vertices.
+    One lip may have twice as many vertices. Lips may be as far apart as their vertices.
     """
     counts = (above, below)
     across = np.concatenate([np.linspace(-20.0, 20.0, count) for count in counts])
     is_upper = np.repeat([True, False], counts)
-    height = np.where(is_upper, 0.5, -0.5)
+    height = np.where(is_upper, 0.5, -0.5) * gap
     forward = np.where(is_upper, 1.5, 0.0)  # the upper lip is in front
     landmarks = np.zeros((68, 3))
     landmarks[60:68, 0] = [-24.0, -12.0, 0.0, 12.0, 24.0, 12.0, 0.0, -12.0]
@@ -41,6 +43,9 @@ def test_every_vertex_of_either_lip_is_in_a_pair(above, below):
         positions=np.stack([across, height, forward], axis=1),
         areas=np.repeat([40.0 / above, 40.0 / below], counts),
         vertex_count=above + below,
+        edges=np.zeros((0, 2), np.int32),
+        lengths=np.zeros(0),
+        spacing=np.full(above + below, 5.0),
     )
     lip_side = np.where(is_upper, 1.0, -1.0)
     lips = pair_lips(surface, landmarks, lip_side, 2.0)

@@ -68,7 +68,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
     """A single pair's speed after a substep follows from its spring's force at the end."""
     skin = model.skin
     h = 0.002
-    grip = Grip(3.0, 0.4)
+    grip = Grip(3.0, 5.0, 0.4)
     rest = skin.rest
     mass = skin.mass
     lips = skin.lips
@@ -88,12 +88,20 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
         ends = mine.x + h * mine.v - rest
         apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b]
         apart[1] -= lips.below[pair] * grip.overlap
-        force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
+        force = _firmness(grip, lips, mine.x - rest)[pair] * lips.seal[pair] * apart
         expected = np.zeros_like(rest)
         np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
         gained = mass[:, None] * (mine.v - before) / h
         assert np.abs(force).max() > 0.0
         assert np.allclose(gained, expected, rtol=1e-6, atol=1e-9 * np.abs(force).max())
+
+
+def _firmness(grip, lips, moved):
+    """Factors of the seal for each pair and axis; a gap has its own, upward."""
+    firmness = np.full((len(lips.vertex), 3), grip.stiffness)
+    is_gap = lips.below * lips.separations(moved)[:, 1] < grip.overlap
+    firmness[is_gap, 1] = grip.gap_stiffness
+    return firmness * SEAL_AXES
 
 
 def _sealed_speeds(skin, state, grip, h):
@@ -110,7 +118,7 @@ def _sealed_speeds(skin, state, grip, h):
     light = inverse[lips.vertex] + w**2 * inverse[lips.beside[:, 0]]
     light = light + (1.0 - w) ** 2 * inverse[lips.beside[:, 1]]
     light = light / lips.averaging[:, None]
-    give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
+    give = h * light * lips.seal[:, None] * _firmness(grip, lips, state.x - rest)
     apart = difference(state.x - rest)
     speed = difference(state.v)
     apart[:, 1] -= lips.below * grip.overlap
