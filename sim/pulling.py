@@ -15,6 +15,9 @@ Few controls are used. The first is the control that reduces the sum most. The s
 that reduces the sum most together with the first, and so on. The slopes at the start determine the
 choice. So the controls depend only on the targets, not on the path of the finger, and the pose
 stays when the finger is released.
+A control is left out if it moves skin at the finger's rim more than skin at the mouse: a brow that
+is drawn up would open the lid. A control that moves other skin most is not added if it only
+replaces a part of another one: a chin that is drawn down would lower the lip instead of the jaw.
 No control moves the finger's skin away from its target. Otherwise a chin that is drawn down would
 also thrust the jaw forward, because this holds the rest of the jaw in its place.
 A target beyond the reach of the strongest control is moved back to this reach, because the price
@@ -119,11 +122,19 @@ class Pull:
             least_of_best = 0.7
             best = fraction.max(initial=0.0)
             is_meant = fraction > min(least_of_largest, least_of_best * best)
+            # Nor is it meant for skin at the mouse if it moves skin at the finger's rim more.
+            least_of_finger = 0.7
+            lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
+            is_at_mouse = is_meant & (centre > least_of_finger * lengths)
+            is_meant = is_at_mouse if is_at_mouse.any() else is_meant
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._limits = self._limits[:, is_meant]
             self._value = self._start = self._start[is_meant]
             self._slope = self._slope[is_meant]
             self._first = self._slope.copy()
+            lengths = np.linalg.norm(self._slope, axis=2)
+            under = lengths[:, self._vertices].max(axis=1)
+            self._is_at_home = under > 0.95 * lengths.max(axis=1)
         return bool(self.candidates)
 
     @property
@@ -259,6 +270,13 @@ class Pull:
         least_worth = 0.025
         worth = least_worth * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
+        # A control that moves other skin most is not added if it replaces a part of a used control.
+        least_kept = 0.8  # share of a used control's change that must stay
+        before = system.change(needed)
+        for n in np.flatnonzero(~needed & ~self._is_at_home):
+            after = system.change(needed | (np.arange(len(costs)) == n))
+            if (np.abs(after) < least_kept * np.abs(before))[needed].any():
+                costs[n] = np.inf
         best = needed | (np.arange(len(costs)) == costs.argmin())
         # Controls whose gains differ by less than this share are used together, such as both sides
         # of a muscle.
@@ -334,6 +352,10 @@ class _Lasso(NamedTuple):
             if farthest < sweep_tolerance:
                 break
         return total - self.changed
+
+    def change(self, usable: Flags) -> Floats64:
+        """Return the change of each control, so far and to the minimum, (C,)."""
+        return self.changed + self.least(usable)
 
     def cost(self, usable: Flags) -> float:
         """Return the least value of the sum with only these controls, up to a constant."""

@@ -17,6 +17,7 @@ SIGHT = np.array([0.0, 0.0, -1.0])  # from the front
         ((57,), -8.0, "lower", "upper"),
         ((51,), 5.0, "levator_labii_superioris", "roll_lower"),
         ((8,), -15.0, "jaw_open", "jaw_forward"),
+        ((8,), -8.0, "jaw_open", "depressor_labii"),
     ],
 )
 def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwanted):
@@ -24,7 +25,7 @@ def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwan
 
     The finger pulled skin within 16 mm through the air. So a pull at an upper lid tensed the lower
     one, and a pull at a lower lip rolled in the upper one. A pull at the chin also thrust the jaw
-    forward, which lifts the chin.
+    forward, which lifts the chin, or lowered the lip instead of the jaw.
     """
     scene = session.scene
     place = scene.positions[scene.landmarks[list(landmarks)]].mean(axis=0)
@@ -40,14 +41,16 @@ def test_a_finger_sets_what_draws_its_skin(session, landmarks, up, wanted, unwan
     assert moved[1] / up > 0.8
 
 
-def test_a_cheek_that_is_lifted_leaves_the_lid(session):
+@pytest.mark.parametrize("height", [0.65, 0.75])
+def test_a_cheek_that_is_lifted_leaves_lid_and_nose(session, height):
     """Muscles of other skin are not used, although they move skin at the finger's rim.
 
-    A pull at the cheek below the lid also lifted the lower lid with full force.
+    A pull at the cheek below the lid also lifted the lower lid with full force, or wrinkled the
+    nose. height: 0 at the corner of the mouth, 1 at the lid.
     """
     positions = session.scene.positions
     lid, corner = (positions[session.scene.landmarks[k]].mean(axis=0) for k in ([46, 47], [54]))
-    aim = 0.75 * lid + 0.25 * corner
+    aim = height * lid + (1.0 - height) * corner
     aside = np.linalg.norm((positions - aim)[:, :2], axis=1)
     place = positions[np.where(positions[:, 2] > aim[2] - 25.0, aside, np.inf).argmin()]
     finger = SkinDrag(session, Settings(), place, SIGHT, poses=True)
@@ -55,4 +58,4 @@ def test_a_cheek_that_is_lifted_leaves_the_lid(session):
     finger.release()
     found = {name for name, value in session.values.items() if value}
     assert "orbicularis_oculi_orbital_left" in found
-    assert not [name for name in found if "palpebral" in name]
+    assert not [name for name in found if "palpebral" in name or "labii" in name]
