@@ -60,7 +60,8 @@ EXPRESSED = {  # landmarks, their direction, and their least motion [mm]
     ],
     "anger": [((21, 22), -UP, 3.0), ((22,), -LEFT, 0.5)],
     "disgust": [((31, 35), UP, 3.0), ((50, 52), UP, 3.0)],
-    "fear": [((21, 22), UP, 2.0), ((43, 44), UP, 1.0), ((54,), LEFT, 2.0)],
+    # In fear the brow rises with the raised fold below it, which else is a dark shelf.
+    "fear": [((19, 24), UP, 4.5), ((21, 22), UP, 2.0), ((43, 44), UP, 1.0), ((54,), LEFT, 2.0)],
 }
 
 
