@@ -355,7 +355,7 @@ class _Lasso(NamedTuple):
 
     def change(self, usable: Flags) -> Floats64:
         """Return the change of each control, so far and to the minimum, (C,)."""
-        return self.changed + self.least(usable)
+        return self.changed + self.minimise(usable)
 
     def cost(self, usable: Flags) -> float:
         """Return the least value of the sum with only these controls, up to a constant."""
