@@ -125,11 +125,14 @@ def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> A
         bodies += bodies_of_parts(scene, eyes_are_nodes=eyes_are_nodes)
     else:
         bodies.append(file.body)
+        missing = _missing(file)
         if request.adds_parts:
-            missing = _missing(file)
+            added = {name for parts in missing.values() for name in parts}
             bodies += bodies_of_parts(
-                scene, eyes_are_nodes=eyes_are_nodes, wanted=lambda part: part.name in missing
+                scene, eyes_are_nodes=eyes_are_nodes, wanted=lambda part: part.name in added
             )
+        elif missing:
+            report(f"not in the file: {', '.join(missing)}; --parts adds built-in ones")
     names = shape_names(scene, request.kinds)
     poses = dict(poses_of(scene, names, progress=request.progress))
     pairs: list[tuple[str, str]] = []
@@ -148,10 +151,11 @@ def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> A
             f"correctives: {', '.join(names[len(names) - len(pairs) :]) or 'none reduces an error'}"
         )
     sums = table(scene, poses, pairs)
-    if take is not None:
-        sums.append(difference_on(take, scene, poses, pairs))
     for difference in sums:
         report(f"error of a sum of shapes: {difference}")
+    if take is not None:
+        sums.append(difference_on(take, scene, poses, pairs))
+        report(f"error of sums of shapes in all frames of a take, {sums[-1]}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
     return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
 
@@ -224,16 +228,16 @@ def _is_as_fitted(rest: Floats64, head: FittedHead) -> bool:
     return bool(np.allclose(rest[fitted], head.vertices, rtol=0.0, atol=1e-3))
 
 
-def _missing(file: FileHead) -> set[str]:
-    """Return the names of built-in parts that a file lacks."""
+def _missing(file: FileHead) -> dict[str, tuple[str, ...]]:
+    """Return kinds of parts that a file lacks, with the names of the built-in parts."""
     roles = {piece.role for piece in file.pieces}
-    found: set[str] = set()
+    found: dict[str, tuple[str, ...]] = {}
     if not roles & {"eye_left", "eye_right"} and not len(file.body.between_lids):
-        found |= {"eyeball_left", "eyeball_right", "eye_corners"}
+        found["eyes"] = ("eyeball_left", "eyeball_right", "eye_corners")
     if not roles & {"upper_teeth", "lower_teeth"}:
-        found |= {"teeth_upper", "teeth_lower", "gums_upper", "gums_lower"}
+        found["teeth"] = ("teeth_upper", "teeth_lower", "gums_upper", "gums_lower")
     if "tongue" not in roles:
-        found.add("tongue")
+        found["tongue"] = ("tongue",)
     if "mouth" not in roles and not len(file.body.in_bag):
-        found |= {"oral_cavity_upper", "oral_cavity_lower"}
+        found["inside of the mouth"] = ("oral_cavity_upper", "oral_cavity_lower")
     return found

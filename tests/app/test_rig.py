@@ -314,6 +314,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     path = tmp_path / "fine.glb"
     output = succeeded("rig", mesh, "--landmarks", landmarks, "-o", path)
     assert "following a simplified mesh" in output
+    assert "not in the file: eyes, teeth, tongue, inside of the mouth; --parts" in output
     player = Player(path)
     points = player.attribute("head", "POSITION")
     assert np.abs(points[: len(fine.mesh.vertices)] - fine.mesh.vertices).max() < 1e-6
