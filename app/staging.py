@@ -18,7 +18,7 @@ from typing import IO, Any
 if sys.platform != "win32":
     import fcntl
 
-OLD = 86_400.0  # [s] since the last change in a folder before its removal
+LEAST_AGE = 86_400.0  # [s] since the last change in a folder before its removal
 _swept: set[Path] = set()  # parent folders that this process has cleaned
 
 
@@ -63,7 +63,7 @@ def sweep(parent: Path) -> None:
         for path in list(filter(is_staging_folder, parent.iterdir())):
             with contextlib.suppress(OSError):  # another process may be faster
                 changes = [each.lstat().st_mtime for each in (path, *path.rglob("*"))]
-                if max(changes) < time.time() - OLD:
+                if max(changes) < time.time() - LEAST_AGE:
                     shutil.rmtree(path, ignore_errors=True)
 
 

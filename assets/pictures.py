@@ -25,7 +25,7 @@ from .errors import AssetError
 from .user_files import beside, named, read_file
 from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
-LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
+LARGEST_SIDE = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
 KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n"  # first bytes of a KTX 2 file
 
 
@@ -118,7 +118,7 @@ def _read_picture(folder: Path, name: str) -> Image:
 
 
 def decoded(content: bytes, name: str) -> Image:
-    """The picture in a file's content, sRGB, shape (H, W, 3), at most LARGEST each way.
+    """The picture in a file's content, sRGB, shape (H, W, 3), at most LARGEST_SIDE each way.
 
     name: for messages. Raises AssetError for a broken or too large picture, or another format.
     """
@@ -140,7 +140,9 @@ def decoded(content: bytes, name: str) -> Image:
 
 
 def _basis_picture(content: bytes, name: str) -> Image:
-    """Return the picture in a KTX 2 file, as `decoded` does: its largest mip level up to LARGEST.
+    """Return the picture in a KTX 2 file, as `decoded` does.
+
+    The mip level is the largest that is at most LARGEST_SIDE each way.
 
     Source: Khronos Group, "KHR_texture_basisu" (rows run from the top).
     """
@@ -154,11 +156,12 @@ def _basis_picture(content: bytes, name: str) -> Image:
     try:
         texture = decoder.open(content)
         sizes = [max(texture.level_size(level)) for level in range(texture.levels)]
-        level = next(number for number, size in enumerate(sizes) if size <= LARGEST)
+        level = next(number for number, size in enumerate(sizes) if size <= LARGEST_SIDE)
         return np.array(texture.transcode("rgba8", level).data[..., :3])
     except StopIteration:
         raise AssetError(
-            f"its picture {named(name)}: is wider or higher than {LARGEST} pixels; save it smaller"
+            f"its picture {named(name)}: is wider or higher than {LARGEST_SIDE} pixels; "
+            "save it smaller"
         ) from None
     except (decoder.BasisuError, MemoryError, ValueError) as error:
         reason = " ".join(str(error).split())[:200]
@@ -180,10 +183,10 @@ def _shrunk(picture: Any) -> Image:
     """Return an opened Pillow picture in the form of `decoded`."""
     import PIL.Image
 
-    picture.draft("RGB", (LARGEST, LARGEST))
+    picture.draft("RGB", (LARGEST_SIDE, LARGEST_SIDE))
     if picture.mode.startswith("I"):  # grey of 16 bits: Pillow would clip it
         levels = np.asarray(picture).astype(np.uint32)
         picture = PIL.Image.fromarray(((levels + 128) // 257).astype(np.uint8))
     colours = picture.convert("RGB")
-    colours.thumbnail((LARGEST, LARGEST))
+    colours.thumbnail((LARGEST_SIDE, LARGEST_SIDE))
     return np.asarray(colours)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from risorius.assets.fitting.guess import FIRST, guess
+from risorius.assets.fitting.guess import FIRST_LANDMARKS, guess
 from risorius.assets.identities import person_called
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64
@@ -32,7 +32,7 @@ class Guess(NamedTuple):
 
 def guessed(name: str, mesh: Mesh, true: Floats64) -> Guess:
     """Guess the landmarks of a mesh. true: the true landmarks [the mesh's unit], shape (68, 3)."""
-    found = guess(mesh, {number: true[number] for number in FIRST})
+    found = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
     right_corner, left_corner = true[[36, 45]]
     apart = 89.0  # [mm], the value of the built-in head
     scale = apart / np.linalg.norm(left_corner - right_corner)

@@ -31,7 +31,7 @@ from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .report import Target, at_most, table
-from .subjects import DENSE, MILLIMETRES, MODES, Faces, Points, read_arrays
+from .subjects import DENSE_FILE, MILLIMETRES, MODES_FILE, Faces, Points, read_arrays
 
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
@@ -61,12 +61,12 @@ class IdentitySpace:
     @classmethod
     def read(cls, folder: Path) -> IdentitySpace:
         """Read a folder. Raises UserError, which names the file, if something is missing."""
-        face = read_arrays(folder / DENSE, ("vertices", "triangles", "landmarks68"))
-        if not (folder / MODES).is_file():
-            raise UserError(f"{folder / MODES}: is not there; it holds the modes of identity")
-        modes = read_arrays(folder / MODES, ("modes",))["modes"]
+        face = read_arrays(folder / DENSE_FILE, ("vertices", "triangles", "landmarks68"))
+        if not (folder / MODES_FILE).is_file():
+            raise UserError(f"{folder / MODES_FILE}: is not there; it holds the modes of identity")
+        modes = read_arrays(folder / MODES_FILE, ("modes",))["modes"]
         if modes.shape != (len(modes), *face["vertices"].shape):
-            raise UserError(f"{folder / MODES}: 'modes' must move each vertex of {DENSE}")
+            raise UserError(f"{folder / MODES_FILE}: 'modes' must move each vertex of {DENSE_FILE}")
         return cls(
             MILLIMETRES * face["vertices"].astype(np.float64),
             face["triangles"].astype(np.int32),

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 import PIL.Image
 
-from risorius.app.dataset.table import BARE
+from risorius.app.dataset.table import NOTHING_WORN
 from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.pictures import Image
@@ -221,7 +221,7 @@ def measure(folder: Path, name: str, detector: Detector) -> Finding:
     picture_count = 0
     for file in files:
         labels = json.loads(file.read_text("utf-8"))
-        if labels["person"].get("mask", BARE) != BARE:
+        if labels["person"].get("mask", NOTHING_WORN) != NOTHING_WORN:
             continue
         picture_count += 1
         picture = PIL.Image.open(file.with_suffix(".png")).convert("RGB")

@@ -27,7 +27,7 @@ from risorius.app.files import check_file, written_atomically
 from risorius.assets.wavefront import read_obj
 from risorius.geometry.arrays import Floats32, Integers32, Integers64
 
-from .subjects import DENSE, MODES
+from .subjects import DENSE_FILE, MODES_FILE
 
 Points = npt.NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
     Raises UserError if `checkout` is not a checkout of ICT-FaceKit, and OSError.
     """
     licence_file = "LICENSE"
-    for name in (DENSE, MODES, licence_file):
+    for name in (DENSE_FILE, MODES_FILE, licence_file):
         check_file(folder / name)
     neutral_file = "generic_neutral_mesh"
     head, corners = _read(checkout, neutral_file)
@@ -70,7 +70,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
     if not fields:
         raise UserError(f"{checkout / MODEL}: has none of the expressions {', '.join(SHAPES)}")
     arrays: dict[str, Mapping[str, npt.NDArray[np.generic]]] = {
-        DENSE: {
+        DENSE_FILE: {
             "vertices": neutral.astype(np.float32),
             "triangles": triangles,
             "landmarks68": _landmarks(checkout / "README.md"),
@@ -79,7 +79,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
     }
     names = [name for k in range(1000) if _file(checkout, name := f"identity{k:03d}") is not None]
     if names:
-        arrays[MODES] = {"modes": np.array([moved(name) for name in names])}
+        arrays[MODES_FILE] = {"modes": np.array([moved(name) for name in names])}
     for name, content in arrays.items():
         with written_atomically(folder / name) as part:
             np.savez_compressed(part, allow_pickle=False, **content)

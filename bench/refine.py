@@ -39,7 +39,7 @@ from risorius.refine_gl.refined import GpuBuffers
 from risorius.render.surface import is_software
 
 from .report import processor, table
-from .subjects import SETTLE, settled_positions
+from .subjects import SETTLING_FRAMES, settled_positions
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
@@ -112,7 +112,8 @@ def load_of(size: str) -> Load:
     simulation = sim.create(head)
     full_expressions = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
     frames = [
-        settled_positions(simulation, head.expressions[name], SETTLE) for name in full_expressions
+        settled_positions(simulation, head.expressions[name], SETTLING_FRAMES)
+        for name in full_expressions
     ]
     return Load("face", head.faces, head.vertices, frames)
 

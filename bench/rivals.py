@@ -36,7 +36,7 @@ from .report import processor, table
 from .rival_libraries import METHODS, Faces, Frame, Method, Points, Surface
 from .subjects import Subject
 
-TIMES = 4.0
+TRIANGLE_RATIO = 4.0
 """Number of triangles of the refined mesh relative to the coarse mesh."""
 
 
@@ -176,7 +176,7 @@ def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
     """The text to print."""
     packages = dict.fromkeys(method.package for method in methods)
     lines = [
-        f"Refined to {TIMES:g} times the triangles, on all cores of {processor()}.",
+        f"Refined to {TRIANGLE_RATIO:g} times the triangles, on all cores of {processor()}.",
         ", ".join(f"{package} {version(package)}" for package in packages),
     ]
     for surface in dict.fromkeys(row.surface for row in rows):
@@ -189,11 +189,11 @@ def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
 
 
 def _limit(case: Case, method: Method) -> float:
-    """The limit that leads to TIMES the triangles, or slightly fewer."""
+    """The limit that leads to TRIANGLE_RATIO times the triangles, or slightly fewer."""
     frame = method.bind(case.faces, case.rest)
 
     def is_over(limit: float) -> bool:
-        return len(frame(case.positions, limit)[1]) > TIMES * len(case.faces)
+        return len(frame(case.positions, limit)[1]) > TRIANGLE_RATIO * len(case.faces)
 
     # Begin with few triangles: a limit that is far too low may lead to billions.
     high = 10.0 * float(np.linalg.norm(np.ptp(case.positions, axis=0)))

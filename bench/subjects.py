@@ -32,9 +32,9 @@ Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
 MILLIMETRES = 10.0  # per centimetre, the unit of a folder of scans
-DENSE = "face.npz"
-MODES = "identity_modes.npz"
-SETTLE = 90  # frames of 1/60 s until a pose is still
+DENSE_FILE = "face.npz"
+MODES_FILE = "identity_modes.npz"
+SETTLING_FRAMES = 90  # frames of 1/60 s until a pose is still
 COARSE_TRIANGLES = 2029  # of a decimated scan, about as many as in the built-in head
 # Landmarks by region of the face.
 GROUPS = {
@@ -61,16 +61,16 @@ class Scans:
     def read(cls, directory: Path) -> Scans:
         """Read a folder. Raises UserError, which names the file, if it is broken."""
         other_arrays = ("vertices", "triangles", "landmarks68")
-        arrays = read_arrays(directory / DENSE, other_arrays)
+        arrays = read_arrays(directory / DENSE_FILE, other_arrays)
         vertices, triangles, landmarks = (arrays.pop(name) for name in other_arrays)
         is_mesh = vertices.shape[1:] == triangles.shape[1:] == (3,) and landmarks.shape == (68,)
         if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
-            raise UserError(f"{directory / DENSE}: holds no mesh with 68 of its vertices")
+            raise UserError(f"{directory / DENSE_FILE}: holds no mesh with 68 of its vertices")
         fields: dict[str, Points] = {}
         side_names = {"_L": "Left", "_R": "Right"}
         for name, array in arrays.items():
             if array.shape != vertices.shape:
-                raise UserError(f"{directory / DENSE}: {name} must move all vertices")
+                raise UserError(f"{directory / DENSE_FILE}: {name} must move all vertices")
             stem = name[:-2]
             end = name[-2:]
             if end in side_names:
@@ -130,7 +130,7 @@ def built_in(level: int = 2) -> Subject:
     simulation = fine_simulation(head, fine)
     poses = {}
     for name, values in head.expressions.items():
-        moved = settled_positions(simulation, values, SETTLE)
+        moved = settled_positions(simulation, values, SETTLING_FRAMES)
         poses[name] = PosePair(moved, moved[:count])
     rest = PosePair(fine.vertices, fine.vertices[:count])
     return Subject(fine.faces, head.faces, rest, poses)

@@ -22,7 +22,7 @@ from risorius.faces import Faces
 Face = tuple[np.ndarray, np.ndarray]  # a picture (3, 144, 144) 0..255, points (68, 2) from -1 to 1
 
 SIDE = 96  # side of the network's pictures [pixels]
-WIDE = 144  # side of stored pictures, in which the network's pictures are turned and moved
+STORED_SIDE = 144  # side of stored pictures, in which the network's pictures are turned and moved
 
 
 def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
@@ -31,12 +31,15 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
     high = points[17:].max(axis=0)
     size = (high - low).max()
     middle = 0.5 * (low + high) + [0.0, 0.15 * size]  # the chin is below
-    half = 0.85 * size * WIDE / SIDE
-    factor = max(round(2.0 * half / WIDE), 1)
+    half = 0.85 * size * STORED_SIDE / SIDE
+    factor = max(round(2.0 * half / STORED_SIDE), 1)
     box = np.concatenate([middle - half, middle + half]) / factor
     small = picture.convert("RGB").reduce(factor)
     cut = small.transform(
-        (WIDE, WIDE), PIL.Image.Transform.EXTENT, tuple(box), PIL.Image.Resampling.BILINEAR
+        (STORED_SIDE, STORED_SIDE),
+        PIL.Image.Transform.EXTENT,
+        tuple(box),
+        PIL.Image.Resampling.BILINEAR,
     )
     return np.array(cut).transpose(2, 0, 1), ((points - middle) / half).astype(np.float32)
 
@@ -76,7 +79,7 @@ def points_of_dlib(faces: list[Face]) -> np.ndarray:
     """dlib's points in cut-out faces, (n, 68, 2) from -1 to 1; NaN if it finds no face."""
     found = [read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1) for cut, _ in faces]
     nothing = np.full((68, 2), np.nan)
-    return np.stack([(each or [nothing])[0] for each in found]) / (WIDE / 2) - 1.0
+    return np.stack([(each or [nothing])[0] for each in found]) / (STORED_SIDE / 2) - 1.0
 
 
 def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:

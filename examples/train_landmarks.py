@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from landmark_faces import SIDE, WIDE, Face, points_of_dlib, read_photographs, read_set
+from landmark_faces import SIDE, STORED_SIDE, Face, points_of_dlib, read_photographs, read_set
 from torch import Tensor, nn
 from torch.nn import functional
 
@@ -36,7 +36,7 @@ def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tup
 
     changes: an affine map from the result to the picture, for each picture, shape (n, 2, 3).
     """
-    middle = torch.tensor([[SIDE / WIDE, 0.0, 0.0], [0.0, SIDE / WIDE, 0.0]])
+    middle = torch.tensor([[SIDE / STORED_SIDE, 0.0, 0.0], [0.0, SIDE / STORED_SIDE, 0.0]])
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
     grid = functional.affine_grid(view, [len(pictures), 3, SIDE, SIDE], align_corners=False)
     inside = functional.grid_sample(pictures.float() / 255.0, grid, align_corners=False)
@@ -60,7 +60,7 @@ def _turned(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
     """Turn, scale, shift and mirror at random."""
     count = len(pictures)
     angle = torch.randn(count) * 0.25  # radians
-    size = SIDE / WIDE * torch.exp(torch.randn(count) * 0.12)
+    size = SIDE / STORED_SIDE * torch.exp(torch.randn(count) * 0.12)
     is_mirrored = torch.rand(count) < 0.5
     flip = torch.where(is_mirrored, -1.0, 1.0)
     across = torch.stack([angle.cos() * flip, -angle.sin(), torch.randn(count) * 0.08], dim=1)
@@ -178,7 +178,7 @@ def report(name: str, faces: list[Face], network: Network, mean: Tensor) -> None
     with torch.no_grad():
         found = network(inside)
     rows = {"mean face": mean.expand_as(places), "network": found}
-    rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * WIDE / SIDE).float()
+    rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * STORED_SIDE / SIDE).float()
     print(f"{name}, {len(faces)} faces [%]".ljust(44), *(f"{group:>7}" for group in GROUPS))
     for reader, places_found in rows.items():
         errors = percent(places_found, places)

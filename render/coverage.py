@@ -10,7 +10,7 @@ from .frame import Plane, Skin
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
-from .translucency import CUT_WIDTH, NOWHERE, SUNK_DEPTH, set_cut
+from .translucency import CUT_WIDTH, NO_CUT, SUNK_DEPTH, set_cut
 
 Numbers = tuple[float, float, float]  # the uniform `numbers` of surface_number.glsl
 SKIN_NUMBERS = 190.0, 63.0, 254.0
@@ -69,7 +69,7 @@ class Coverage:
         program = self._program(view, SKIN_NUMBERS, *defines)
         write_uniform(program, "model_view", view.world_to_view)
         if drawn.is_opened:
-            set_cut(program, view, drawn.cut or NOWHERE, CUT_WIDTH)
+            set_cut(program, view, drawn.cut or NO_CUT, CUT_WIDTH)
         skin.stream.draw(program)
 
     def _draw_part(self, placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> None:

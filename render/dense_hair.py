@@ -10,7 +10,7 @@ from .programs import write_uniform
 from .render_target import RenderTarget
 from .translucency import changing_depth_alone
 
-FARTHER = 1.0, 4.0  # factor and units of glPolygonOffset
+POLYGON_OFFSET = 1.0, 4.0  # factor and units of glPolygonOffset
 
 
 def hide_below(
@@ -24,7 +24,7 @@ def hide_below(
     parts: all parts except hair are ignored. program: shadow.glsl with the define SHELLS.
     """
     # These depths equal those of the lowest layer of hair, so rounding would hide parts of it.
-    program.ctx.polygon_offset = FARTHER
+    program.ctx.polygon_offset = POLYGON_OFFSET
     for each in parts:
         if each.buffers.kind != "SHELLS":
             continue

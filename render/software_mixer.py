@@ -19,7 +19,7 @@ from .frame import Plane, Skin
 from .parts import PlacedBuffers
 from .render_target import Rectangle, RenderTarget, around
 from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, rasterise
-from .translucency import NOWHERE, SUNK_DEPTH, in_view
+from .translucency import NO_CUT, SUNK_DEPTH, in_view
 
 _MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
 _LOWEST_PLACE = 0.15  # LOWEST of shell_layers.glsl
@@ -87,7 +87,7 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     if drawn.has_normals:
         values[:, 0] = unit_vectors(rows[:, 3:6] @ view.world_to_view[:3, :3])[:, 1]
     if drawn.is_opened:
-        cut = np.array(drawn.cut or NOWHERE)
+        cut = np.array(drawn.cut or NO_CUT)
         values[:, 1] = rows[:, :3] @ cut[:3] + cut[3]
     kind = TRIANGLES if drawn.has_triangles else SURFACE
     clip = _moved(rows[:, :3], view.world_to_clip)

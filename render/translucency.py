@@ -15,7 +15,7 @@ from .stream import MeshBuffers, TriangleGroup
 CUT_WIDTH = 0.008  # visible thickness of cut skin, as a fraction of the scene's radius
 # Greatest distance that parts may come out of the skin, as a fraction of the scene's radius.
 SUNK_DEPTH = 0.08
-NOWHERE: Plane = 0.0, 0.0, 0.0, -1.0  # no point lies in front of this plane
+NO_CUT: Plane = 0.0, 0.0, 0.0, -1.0  # no point lies in front of this plane
 # Blends colours by their opacity; a transparent background collects premultiplied colours.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -83,7 +83,7 @@ def draw_nearest(
 def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:
     """Set the opacity of a frame's skin, and the plane behind which the skin is translucent."""
     program["opacity"] = frame.style.opacity
-    set_cut(program, view, frame.cut or NOWHERE, CUT_WIDTH)
+    set_cut(program, view, frame.cut or NO_CUT, CUT_WIDTH)
 
 
 def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:

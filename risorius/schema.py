@@ -49,9 +49,9 @@ MUST_BE = {
     "tuple_type": "a list",
 }
 LENIENT = "unknown keys are ignored"  # for files of other versions
-OWN = "("  # readers add keys that begin with this; no file has them
-REST = f"{OWN}rest)"
-HIDDEN = f"{OWN}hidden)"
+ADDED = "("  # readers add keys that begin with this; no file has them
+REST_KEY = f"{ADDED}rest)"
+HIDDEN_KEY = f"{ADDED}hidden)"
 
 
 class Record:
@@ -160,13 +160,13 @@ class Kinds:
         """A choice by the key `kind`, which is not a field of the records."""
         return core_schema.tagged_union_schema(
             {
-                OWN + name: core_schema.no_info_before_validator_function(
+                ADDED + name: core_schema.no_info_before_validator_function(
                     lambda table: {key: table[key] for key in table if key != "kind"},
                     handler.generate_schema(record),
                 )
                 for name, record in self.records.items()
             },
-            lambda table: f"{OWN}{table.get('kind')}" if isinstance(table, Mapping) else None,
+            lambda table: f"{ADDED}{table.get('kind')}" if isinstance(table, Mapping) else None,
             custom_error_type="must_be",
             custom_error_message=f"a table whose 'kind' is one of {', '.join(self.records)}",
         )
@@ -179,8 +179,8 @@ def called(key: str) -> Any:
 
 Number = Annotated[float, Strict(), AllowInfNan(False)]
 Flag = Annotated[bool, Strict()]
-Rest = Annotated[dict[str, Read], called(REST)]  # type of a field with all other keys
-Hidden = Annotated[Read, called(HIDDEN)]  # type of a field without a key in files
+Rest = Annotated[dict[str, Read], called(REST_KEY)]  # type of a field with all other keys
+Hidden = Annotated[Read, called(HIDDEN_KEY)]  # type of a field without a key in files
 
 
 _adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
@@ -272,13 +272,13 @@ def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> 
     """Move unknown keys of a table to the `Rest` field; raises ValueError if there is none."""
     if not isinstance(table, Mapping):
         return table
-    plain = [key for key in known if not key.startswith(OWN)]
+    plain = [key for key in known if not key.startswith(ADDED)]
     found = {key: value for key, value in table.items() if key in plain}
     others = {key: value for key, value in table.items() if key not in plain}
-    if REST in known:
-        return {**found, REST: {str(key): value for key, value in others.items()}}
+    if REST_KEY in known:
+        return {**found, REST_KEY: {str(key): value for key, value in others.items()}}
     for key in () if info.context is LENIENT else others:
-        allowed = ", ".join(each for each in known if not each.startswith(OWN))
+        allowed = ", ".join(each for each in known if not each.startswith(ADDED))
         raise ValueError(
             f"unknown key {quoted(key)}{question(key, known) or '.'} Allowed: {allowed}"
         )
@@ -291,7 +291,7 @@ def _line(where: str, problem: ErrorDetails) -> str:
     for key in problem["loc"]:
         if isinstance(key, int):
             place += f" {key + 1}"
-        elif not key.startswith(OWN) and key != "[key]":
+        elif not key.startswith(ADDED) and key != "[key]":
             place += f", {quoted(key)}"
     place = place.removeprefix(", ")
     kind = problem["type"]
@@ -306,7 +306,7 @@ def _line(where: str, problem: ErrorDetails) -> str:
 
 def _without_entry(document: Any, place: Sequence[int | str]) -> Any:
     """A table without the entry at this place, which may be in a nested table."""
-    keys = [key for key in place if not str(key).startswith(OWN)]
+    keys = [key for key in place if not str(key).startswith(ADDED)]
     if not isinstance(document, Mapping) or not keys or keys[0] not in document:
         return {}
     left = dict(document)

@@ -35,12 +35,12 @@ def turn_above(
     distance = surface.distances_from(edge.astype(np.int64))
     column = axes.column(surface.positions)
     steepness = 4
-    faded = 1.0 + (distance / np.interp(column, *_REACH)) ** steepness
-    fraction = np.interp(column, *_SHARE) / faded
+    faded = 1.0 + (distance / np.interp(column, *_HALF_DISTANCE)) ** steepness
+    fraction = np.interp(column, *_FAR_FRACTION) / faded
     fraction *= smoothstep(side)  # skin beside the corners is held
     where = np.linspace(0.0, 1.0, COLUMNS)
     height = axes.angle(surface.positions) - np.interp(column, where, edge_angles[1])
-    most = np.interp(column, *_MOST) * np.maximum(height, 0.0)
+    most = np.interp(column, *_MOST_MOTION) * np.maximum(height, 0.0)
     edge_turn = np.maximum(edge_angles[0] - edge_angles[1], 0.0)
     near = np.interp(column, where, edge_turn)
     far = np.minimum(fraction * edge_turn.max(), most)
@@ -49,9 +49,9 @@ def turn_above(
     return np.where(np.isfinite(distance), near + beyond * (far - near), np.nan)
 
 
-_REACH = ((-0.2, 0.2, 0.6, 1.0), (4.7, 3.7, 3.1, 2.9))
+_HALF_DISTANCE = ((-0.2, 0.2, 0.6, 1.0), (4.7, 3.7, 3.1, 2.9))
 """Column, and distance from the front edge at which the motion is half as large [mm]."""
-_SHARE = ((-0.2, 0.0, 0.2, 0.6, 0.8, 1.0, 1.2), (0.4, 0.7, 0.76, 0.78, 0.66, 0.35, 0.1))
+_FAR_FRACTION = ((-0.2, 0.0, 0.2, 0.6, 0.8, 1.0, 1.2), (0.4, 0.7, 0.76, 0.78, 0.66, 0.35, 0.1))
 """Column, and motion of the skin near the plate as a fraction of the largest of the edge."""
-_MOST = ((0.0, 0.2, 0.8, 1.0), (0.4, 1.0, 1.0, 0.5))
+_MOST_MOTION = ((0.0, 0.2, 0.8, 1.0), (0.4, 1.0, 1.0, 0.5))
 """Column, and most motion as a fraction of the height above the shut edge."""

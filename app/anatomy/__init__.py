@@ -24,7 +24,7 @@ from .muscle_bands import Muscles
 STRUCTURES = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
 OPACITY = 0.25  # default opacity of the skin
-SOFT = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
+SOFT_PARTS = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
 OUTER_HAIR = (HAIR, HAIR + "_tied")
 CUT_LOCKS = 15.0  # [mm]; distance from the cut of a dissection to the locks of hair that are drawn
 
@@ -92,7 +92,7 @@ class Anatomy:
             place(part, bones, lies_beneath=True, throws_shadow=True)
             for part in self._structures(face, view)
         ]
-        stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
+        stay = [part for part in scene.parts if not part.name.startswith((*SOFT_PARTS, HAIR))]
         openings = self._openings() if SIDES[view.side] else {}
         others = [
             place(half, bones, throws_shadow=not part.strand_radius, opening=opening)
@@ -134,7 +134,7 @@ class Anatomy:
     def _mouth_linings(self, view: AnatomyView) -> list[Any]:
         """Return the parts that line the mouth, if they can be seen."""
         is_seen = "muscles" in view.structures or SIDES[view.side]
-        return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT)]
+        return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT_PARTS)]
 
     def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[Any]:
         """Return the hair on the opaque side; none if both sides are translucent."""
@@ -179,7 +179,7 @@ class Anatomy:
         side = SIDES[view.side]
         lit = self._half(face, part, side), opening
         halves: list[tuple[Any, render.Opening | None]] = [lit]
-        if "muscles" in view.structures or not part.name.startswith(SOFT):
+        if "muscles" in view.structures or not part.name.startswith(SOFT_PARTS):
             halves.append((self._half(face, part, -side), None))
         return [half for half in halves if len(half[0].faces)]
 

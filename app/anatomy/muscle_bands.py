@@ -25,9 +25,9 @@ from ..scenes import Face
 
 ROWS = 22  # places along a band
 AROUND = 12  # places around a band's cross section
-RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
-CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
-TENDON = np.array([0.93, 0.87, 0.77])
+RELAXED_COLOUR = np.array([0.68, 0.29, 0.245])  # sRGB
+CONTRACTED_COLOUR = np.array([0.50, 0.035, 0.045])  # sRGB
+TENDON_COLOUR = np.array([0.93, 0.87, 0.77])
 EYE = ((5.0, 9.0), (12.5, 9.0))
 MOUTH = ((1.0, 8.0), (7.5, 8.0))
 LIPS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))  # landmarks of the lips' edges
@@ -41,7 +41,7 @@ RINGS = (  # beginning and end of names; landmarks; for each band, distance outw
 ALONG = np.linspace(0.0, 1.0, ROWS)
 ARCH = np.sin(np.pi * ALONG)  # 1 in the middle
 END = np.sqrt(np.clip(1.0 - (2.0 * ALONG - 1.0) ** 8, 0.0, 1.0))  # round
-NEAR = 8  # number of vertices that determine the place of the skin
+NEIGHBOURS = 8  # number of vertices that determine the place of the skin
 AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  # landmarks
 
 
@@ -199,12 +199,13 @@ class Muscles:
 
     def _set_shape(self, grid: Floats64, active: Floats64) -> None:
         """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
-        red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
+        change = CONTRACTED_COLOUR - RELAXED_COLOUR
+        red = RELAXED_COLOUR + np.clip(active, 0.0, 1.0)[:, None] * change
         # Share of tendon in the colour: large at both ends of a band.
         tendon = np.clip(1.4 - np.minimum(ALONG, 1.0 - ALONG) / 0.14, 0.0, 0.92)
         fraction = np.tile(tendon, (len(grid), 1))
         fraction[len(self.names) :] = 0.0
-        colour = red[:, None] + fraction[..., None] * (TENDON - red[:, None])
+        colour = red[:, None] + fraction[..., None] * (TENDON_COLOUR - red[:, None])
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         light = 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
         colours = colour[:, :, None] * light[:, None]
@@ -278,12 +279,12 @@ class _Skin:
         return height.reshape(points.shape[:-1])
 
     def _nearest(
-        self, points: Floats64, out: Floats64, count: int = NEAR, reach: float = 0.35
+        self, points: Floats64, out: Floats64, count: int = NEIGHBOURS, reach: float = 0.35
     ) -> tuple[Any, Floats64]:
         """Return the `count` vertices nearest to points, and their weights, (..., count) each."""
         away, near = self._tree.query(points, k=count)
         is_faced = np.einsum("...kc,...c->...k", self.normals[near], out) > 0.0
-        scale = reach * np.maximum(away[..., NEAR - 1 : NEAR] ** 2, 1e-30)
+        scale = reach * np.maximum(away[..., NEIGHBOURS - 1 : NEIGHBOURS] ** 2, 1e-30)
         return near, 1e-9 + is_faced * np.exp(-(away**2) / scale)
 
     def carriers(self, points: Floats64, out: Floats64) -> Any:
@@ -293,7 +294,7 @@ class _Skin:
         the mouth is closed, both lips have vertices near a point. A vertex carries a point only if
         the path along the skin from the band's middle is not much longer than the straight line.
         """
-        near, weight = self._nearest(points, out, 3 * NEAR, 1.0)
+        near, weight = self._nearest(points, out, 3 * NEIGHBOURS, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
         starts, number = np.unique(first, return_inverse=True)
         path_length = path_lengths(self.x, self._faces, starts)

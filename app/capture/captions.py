@@ -15,7 +15,7 @@ from risorius import render
 from ..pictures import Image
 
 INK = (245, 245, 245)
-FAINT = (200, 203, 208)
+FAINT_INK = (200, 203, 208)
 SHADE = (24, 26, 30)
 LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet, for readable text of 15 pixels
 LANCZOS = PIL.Image.Resampling.LANCZOS
@@ -34,7 +34,9 @@ Label = tuple[int, int, Image]
 @functools.lru_cache(maxsize=64)
 def plate(text: str, size: float) -> Image:
     """Draw a line of text, and a smaller second line, on a dark plate; premultiplied RGBA."""
-    lines = [*zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT), strict=False)]
+    lines = [
+        *zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT_INK), strict=False)
+    ]
     width = max(face.getlength(line) for line, face, _ in lines)
     page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
     for index, (line, face, ink) in enumerate(lines):
@@ -63,7 +65,7 @@ def colour_bar(size: float) -> Image:
     title = PIL.Image.new("RGBA", (tall, wide + pad))
     middle = (0.5 * tall, 0.65 * size)
     ImageDraw.Draw(title).text(
-        middle, "Splits of a triangle's edges", font=small, fill=FAINT, anchor="mm"
+        middle, "Splits of a triangle's edges", font=small, fill=FAINT_INK, anchor="mm"
     )
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))

@@ -71,7 +71,7 @@ FORMATS = {
     ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
     ".webp": FilmFormat(f"{WEBP} -loop 0"),
 }
-HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
+WITH_SOUND = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
@@ -106,7 +106,7 @@ class Soundtrack:
 class Encoder:
     """An ffmpeg process that encodes frames into the file `part`; errors name `target`."""
 
-    DYING = 1.0  # [s] to wait for the end of a killed or failed process
+    ENDING_TIME = 1.0  # [s] to wait for the end of a killed or failed process
 
     def __init__(
         self,
@@ -164,13 +164,13 @@ class Encoder:
             with contextlib.suppress(OSError):  # all processes have ended
                 os.killpg(self._process.pid, signal.SIGKILL)  # its session is also its group
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(self.DYING)
+            self._process.wait(self.ENDING_TIME)
         self._messages.close()
         self._frames.close()
 
     def _failure(self) -> UserError:
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(self.DYING)
+            self._process.wait(self.ENDING_TIME)
         self._messages.seek(0)
         messages = self._messages.read().decode(errors="replace").strip().splitlines()
         # ffmpeg's prefix is removed, as in "[out#0/mp4 @ 0x55e9629d] ".

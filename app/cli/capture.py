@@ -169,15 +169,15 @@ def capture(
     played, or --set AU12=0.8 holds a pose.
     """
     from ..capture import capture as film_of
-    from ..capture.outputs import HEARD
+    from ..capture.outputs import WITH_SOUND
     from ..files import check_apart
     from ..passes.labels import beside
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.light, *drawing.files))
-    if sound is not None and (output is None or output.suffix.lower() not in HEARD):
+    if sound is not None and (output is None or output.suffix.lower() not in WITH_SOUND):
         raise UserError(
-            f"--sound {sound}: only films with sound can hold it; end -o in {', '.join(HEARD)}"
+            f"--sound {sound}: only films with sound can hold it; end -o in {', '.join(WITH_SOUND)}"
         )
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"

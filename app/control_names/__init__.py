@@ -14,13 +14,13 @@ from typing import Any
 from risorius.assets.loading import read_words
 
 SIDES = (("_left", "_right"), ("Left", "Right"))  # ends of names: ours, ARKit's
-TURNED = (  # positive values turn to one side, negative values to the other
+SIGNED_CONTROLS = (  # positive values turn to one side, negative values to the other
     "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
     "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
 )  # fmt: skip
 # Their sides are directions of one motion, so equal values cancel.
-OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
-KNOWN = 4096  # cached names; panels need the parts of all their names in each frame
+OPPOSITES = ("AU30", "lips_sideways", "jaw", "mouth")
+CACHE_SIZE = 4096  # cached names; panels need the parts of all their names in each frame
 _TWINS = {  # mirrored controls whose names show no side: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
@@ -28,7 +28,7 @@ _TWINS = {  # mirrored controls whose names show no side: eyes turn left, right 
 }  # fmt: skip
 
 
-@functools.lru_cache(maxsize=KNOWN)
+@functools.lru_cache(maxsize=CACHE_SIZE)
 def split_side(name: str) -> tuple[str, str]:
     """Split a name into its base and its side as spelled; the side is "" for the middle."""
     for side in (side for pair in SIDES for side in pair):
@@ -37,7 +37,7 @@ def split_side(name: str) -> tuple[str, str]:
     return name, ""
 
 
-@functools.lru_cache(maxsize=KNOWN)
+@functools.lru_cache(maxsize=CACHE_SIZE)
 def twin_of(name: str) -> str:
     """Return the name of the mirrored control; a control in the middle mirrors itself."""
     if name in _TWINS:
@@ -54,7 +54,7 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
-            result[twin_of(name)] = -value if name in TURNED else value
+            result[twin_of(name)] = -value if name in SIGNED_CONTROLS else value
     return result
 
 
@@ -66,7 +66,7 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
         base, side = split_side(name)
         twin = twin_of(name)
         is_direction = not side and split_side(twin)[0] != name  # such as AU61 and AU62
-        if is_direction or base in OPPOSITE or base.startswith(sideways) or twin not in values:
+        if is_direction or base in OPPOSITES or base.startswith(sideways) or twin not in values:
             continue
         if (side.strip("_").lower() or "left") == source:
             result[twin] = value

@@ -24,7 +24,7 @@ from ..staging import is_staging_folder, locked
 from .shards import PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
-SEEN = "seen-"  # prefix of files by which workers recognise the set's folder
+TOKEN_PREFIX = "seen-"  # prefix of files by which workers recognise the set's folder
 LENGTHS = "files"  # label that holds the lengths of a sample's other files [bytes]
 
 
@@ -70,7 +70,7 @@ class SetFolder:
             with cannot_be_written(self.path):
                 for left in unfinished.glob("[0-9]*"):
                     shutil.rmtree(left)
-                for left in unfinished.glob(f"{SEEN}*"):
+                for left in unfinished.glob(f"{TOKEN_PREFIX}*"):
                     left.unlink()
                 self.log.unlink(missing_ok=True)
             if not self._has_samples():

@@ -19,7 +19,7 @@ from ..cluster import run_on_cluster
 from ..errors import UserError
 from ..files import cannot_be_written
 from ..workers import Send, WorkerPool
-from .folder import SEEN, UNFINISHED, SetFolder
+from .folder import TOKEN_PREFIX, UNFINISHED, SetFolder
 from .request import SetRequest
 from .studio import Studio
 
@@ -88,7 +88,7 @@ def make_on_cluster(
     """Let a Dask cluster make samples, and yield them; the first failure raises UserError."""
     if not batches:
         return
-    token = f"{SEEN}{secrets.token_hex(8)}"
+    token = f"{TOKEN_PREFIX}{secrets.token_hex(8)}"
     with cannot_be_written(folder.path):
         (folder.path / UNFINISHED / token).touch()
     sent = [replace(batch, token=token) for batch in batches]

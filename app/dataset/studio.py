@@ -40,7 +40,7 @@ from .labels import labels_of_face
 from .request import SetRequest
 from .sampling import Sample, SampleCamera, chosen, draw
 from .surroundings import laid_over, light_of
-from .table import BARE
+from .table import NOTHING_WORN
 
 SHOT_SETTLING = 0.5  # [s] until skin is within 0.001 mm of its place; films take longer
 
@@ -87,7 +87,7 @@ class Studio:
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._picture(model, camera, sample)
         style = render.Style()  # light and background do not matter for passes
-        is_masked = model.labels["mask"] != BARE
+        is_masked = model.labels["mask"] != NOTHING_WORN
         needed = {"depth", "segmentation"} if is_masked else {"depth"}
         images = model.passes.draw(camera, style, {*needed, *request.passes})
         covered = images["segmentation"] == Segment.FACE_WEAR if is_masked else None
@@ -157,8 +157,8 @@ class Studio:
             "measures": {code: round(value, 3) for code, value in person.measures.items()},
         }
         head = in_colours(person, colours, shrink=_shrink_for(self._request.size))
-        frame = None if glasses == BARE else glasses
-        cover = None if mask == BARE else mask
+        frame = None if glasses == NOTHING_WORN else glasses
+        cover = None if mask == NOTHING_WORN else mask
         worn = wearing(head, shirt=shirt, collar=collar, frame=frame, cover=cover)
         scene = FaceScene(worn)
         pipeline = Pipeline(scene, self._renderer)

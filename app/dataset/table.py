@@ -15,9 +15,9 @@ from typing import Annotated, Any
 from risorius import assets
 from risorius.assets.identities import (
     COLLARS,
-    DARKEST,
+    DARKEST_TONE,
     FRAMES,
-    LIGHTEST,
+    LIGHTEST_TONE,
     MASKS,
     SHIRTS,
     Population,
@@ -25,14 +25,14 @@ from risorius.assets.identities import (
 from risorius.assets.identities.hair import CUTS
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.render import LIGHTS
-from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
+from risorius.schema import REST_KEY, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
 
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
-BARE = "none"  # in the table: no glasses, or no mask
+NOTHING_WORN = "none"  # in the table: no glasses, or no mask
 PERSONS = 1_000_000  # number of persons of a seed; other seeds have other persons
 Weights = Mapping[str, float]
 Range = tuple[float, float]
@@ -85,7 +85,7 @@ class Expression(Record):
     face is one-sided.
     """
 
-    units: Annotated[dict[Unit, Fraction], called(REST)]
+    units: Annotated[dict[Unit, Fraction], called(REST_KEY)]
     share: Weight = 0.0
     one_sided: Fraction = 0.0
 
@@ -161,7 +161,7 @@ class Persons(Record):
     count: Annotated[int, Within(1, PERSONS)]
     women: Fraction
     age: Annotated[Range, _between(18.0, 90.0)]
-    tone: Annotated[Range, _between(DARKEST, LIGHTEST)]
+    tone: Annotated[Range, _between(DARKEST_TONE, LIGHTEST_TONE)]
 
 
 @dataclass(frozen=True)
@@ -197,8 +197,8 @@ class SampleTable(Record):
     cuts_of_men: Annotated[Weights, _drawn_from(CUTS)]
     shirts: Annotated[Weights, _drawn_from(SHIRTS)]
     collars: Annotated[Weights, _drawn_from(COLLARS)]
-    glasses: Annotated[Weights, _drawn_from((BARE, *FRAMES))]
-    masks: Annotated[Weights, _drawn_from((BARE, *MASKS))]
+    glasses: Annotated[Weights, _drawn_from((NOTHING_WORN, *FRAMES))]
+    masks: Annotated[Weights, _drawn_from((NOTHING_WORN, *MASKS))]
     lights: Annotated[Weights, _drawn_from(LIGHTS)]
     degradations: Degradations
 

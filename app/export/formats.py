@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # names of the files of a sequence, without suffix
-OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files of a sequence
+SEQUENCE_FILES = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files of a sequence
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def write(clip: Clip, output: Path, chosen: Format, request: ExportRequest) -> s
     whole = (
         written_atomically(output)
         if chosen.suffixes
-        else folder_atomically(output, OWN, overwrite=request.overwrite)
+        else folder_atomically(output, SEQUENCE_FILES, overwrite=request.overwrite)
     )
     with cannot_be_written(output), whole as part, threadpool_limits(1):
         return writer(clip, part, request)

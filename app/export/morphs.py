@@ -19,7 +19,7 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 TOLERANCE = 0.098  # [mm]: largest error; with single precision it stays below 0.1
-NOTHING = 1e-6  # [mm]: a target that moves every vertex by less is left out
+LEAST_MOTION = 1e-6  # [mm]: a target that moves every vertex by less is left out
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     # Components below this share of the largest component are rounding errors.
-    rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), NOTHING)).sum())
+    rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), LEAST_MOTION)).sum())
     curves = curves[:, :rank]
     shapes = lengths[:rank, None] * shapes[:rank]
     limit = min(rank, most - 1)
@@ -71,7 +71,7 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
         # In each round, a vertex keeps at least the root of 0.03 of its relative weight.
-        ratio = left / max(left.max(), NOTHING)
+        ratio = left / max(left.max(), LEAST_MOTION)
         weighing *= np.sqrt(np.maximum(ratio, 0.03))
         weighing /= weighing.max()
         low = max(high - 15, 0)  # a round saves at most 15 shapes
@@ -104,7 +104,7 @@ def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     shifted = (curves - lowest) / np.where(lengths > 0.0, lengths, 1.0)
     unit_weights = np.clip(shifted, 0.0, 1.0)
     weights = np.column_stack([np.ones(len(moved)), unit_weights])
-    kept = np.abs(targets).max(axis=1, initial=0.0) > NOTHING
+    kept = np.abs(targets).max(axis=1, initial=0.0) > LEAST_MOTION
     targets = targets[kept]
     weights = weights[:, kept]
     error = float(_farthest(moved, weights, targets).max())

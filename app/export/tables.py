@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..control_names.angles import DEGREES
-from ..recordings.named_columns import OUTWARD
+from ..recordings.named_columns import OUTWARD_ANGLES
 from ..recordings.names import ARKIT
 from ..rig.curves import as_seen, shape_curves
 from ..rig.surface import RefinedSurface
@@ -58,7 +58,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
     # ARKit's angles [rad] are positive to the subject's right and down, and our controls to the
     # left and up. ARKit's roll is positive to the right shoulder, and the axes of eyes that look
-    # straight ahead point OUTWARD.
+    # straight ahead point outward.
     angle_columns = {
         "HeadYaw": "head_yaw",
         "HeadPitch": "head_pitch",
@@ -72,7 +72,9 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     }
     for name, control in angle_columns.items():
         radians = -math.radians(DEGREES.get(control, 0.0))
-        outward = math.radians(OUTWARD.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0))
+        outward = math.radians(
+            OUTWARD_ANGLES.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0)
+        )
         columns[name] = radians * lowest.get(control, still) - outward
     with part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")

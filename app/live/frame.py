@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..recordings.names import NONSENSE, shape_of
+from ..recordings.names import LARGEST_VALUE, shape_of
 
 MOST_BYTES = 16384  # in a packet that is read; known senders send at most about 3000
 
@@ -32,7 +32,7 @@ class LiveFrame:
 
 def set_shape(channels: dict[str, float], name: str, value: float) -> None:
     """Set a shape; ignore a value far outside of 0 to 1, which trackers sometimes send."""
-    if abs(value) <= NONSENSE:
+    if abs(value) <= LARGEST_VALUE:
         channels[name] = value
 
 

@@ -27,7 +27,7 @@ from .receiver import Receiver
 LOST_AFTER = 0.4  # [s] without a frame, so a network may lose ten frames at 30 a second
 EASING_IN = 0.25  # [s]
 EASING_OUT = 0.6
-CALIBRATING = 0.5  # [s] of a neutral face
+CALIBRATION_TIME = 0.5  # [s] of a neutral face
 CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # channels that a sender may use
 
 
@@ -145,7 +145,7 @@ class LiveFace(Receiver):
 
     def calibrate(self) -> None:
         """Take the face of the next half second as neutral."""
-        self._neutral, self._neutral_until = [], self._clock() + CALIBRATING
+        self._neutral, self._neutral_until = [], self._clock() + CALIBRATION_TIME
 
     def _end_calibration(self) -> None:
         """Take the median of each channel as neutral; a blink does not change a median."""

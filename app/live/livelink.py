@@ -18,7 +18,7 @@ import math
 import struct
 from collections.abc import Mapping
 
-from ..recordings.named_columns import OUTWARD
+from ..recordings.named_columns import OUTWARD_ANGLES
 from ..recordings.names import ARKIT
 from .frame import LiveFrame, readable_subject, set_angle, set_shape
 
@@ -55,7 +55,7 @@ def parse(packet: bytes) -> LiveFrame | None:
         set_shape(channels, shape, value)
     for angle, value in zip(ANGLES, values[len(ARKIT) :], strict=True):
         if angle is not None:
-            set_angle(channels, angle, -math.degrees(value) - OUTWARD.get(angle, 0.0))
+            set_angle(channels, angle, -math.degrees(value) - OUTWARD_ANGLES.get(angle, 0.0))
     return LiveFrame(channels, name)
 
 
@@ -72,7 +72,7 @@ def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> byt
     """Return Live Link Face's packet for these channels; missing channels are 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
-        degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)
+        degrees = channels.get(angle or "", 0.0) + OUTWARD_ANGLES.get(angle or "", 0.0)
         values.append(-math.radians(degrees))
     head = struct.pack(">B", VERSION)
     device = b"risorius"

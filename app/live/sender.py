@@ -13,7 +13,7 @@ from ..text import in_one_line
 from .livelink import packet_of
 from .protocols import PROTOCOLS, resolved
 
-CARRIED = frozenset((*ARKIT, *HEAD_ANGLES, *EYE_ANGLES))
+CARRIED_NAMES = frozenset((*ARKIT, *HEAD_ANGLES, *EYE_ANGLES))
 
 
 class Sender:
@@ -56,7 +56,7 @@ class Sender:
 
         Raises UserError if the take has no channel that can be sent.
         """
-        channels = {name: values for name, values in take.channels.items() if name in CARRIED}
+        channels = {name: values for name, values in take.channels.items() if name in CARRIED_NAMES}
         if not channels:
             raise UserError(
                 f"{in_one_line(take.source)}: {take.kind} has no values to send; Live Link "

@@ -37,7 +37,7 @@ from .frame import LiveFrame, set_angle, set_shape, shape_named
 _BUNDLE = b"#bundle\0"
 _HEAD = len(_BUNDLE) + 8  # the mark and a time, which is ignored
 # First bytes of the messages that are read; the library might log errors for other messages.
-_KNOWN = re.compile(
+_KNOWN_BEGINNING = re.compile(
     rb"/VMC/Ext/(Blend/Val\0\0,s[fdi]\0|Blend/Apply\0{4}(,\0{3})?\Z|Bone/Pos\0{3},sf{7}\0{3})"
 )
 Quaternion = tuple[float, float, float, float]  # x, y, z, w
@@ -54,7 +54,7 @@ def parse(packet: bytes) -> LiveFrame | None:
         most_depth = 4  # depth to which bundles may be nested
         read_bones = ("Neck", "Head", "LeftEye", "RightEye")
         for message in _messages(packet, most_depth):
-            if not _KNOWN.match(message):
+            if not _KNOWN_BEGINNING.match(message):
                 continue
             parsed = OscMessage(message)
             if parsed.address == apply_address:

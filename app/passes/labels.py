@@ -121,7 +121,7 @@ CHANNELS = {
     "triangle": ("triangle.ID",),
     "splits": ("splits",),
 }
-NOTHING = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is read as signed
+NO_TRIANGLE = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is read as signed
 ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 

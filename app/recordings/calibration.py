@@ -22,7 +22,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from ..control_names import TURNED, twin_of
+from ..control_names import SIGNED_CONTROLS, twin_of
 from ..errors import UserError
 from .names import ANGLES, ARKIT, HEAD_ANGLES, VISEMES, angle_of, shape_of
 from .take import Take
@@ -56,7 +56,8 @@ class Calibration:
         if not self.mirror:
             return calibrated
         return {
-            twin_of(name): -value if name in TURNED else value for name, value in calibrated.items()
+            twin_of(name): -value if name in SIGNED_CONTROLS else value
+            for name, value in calibrated.items()
         }
 
     def _value(self, name: str, value: Value) -> Value:

@@ -21,7 +21,7 @@ from risorius.geometry.arrays import Floats64
 from .gaps import take_from_rows
 from .head_pose import head_of
 from .names import angle_of, shape_of
-from .table import LARGEST, without_percent
+from .table import LARGEST_NUMBER, without_percent
 from .take import Take, TakeRequest
 from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
@@ -30,7 +30,7 @@ from .values import is_calibrated, is_flag, rows_without_face, shares, without_r
 FACES = ("faceblendshapes", "blendshapes", "categories")
 FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
 RATES = ("fps", "exportfps", "framerate")
-DEEPEST = 4  # nested tables that are searched for a face
+MOST_LEVELS = 4  # nested tables that are searched for a face
 
 
 def recognises(document: Any) -> bool:
@@ -119,7 +119,7 @@ def _are_names(item: Any) -> bool:
     return is_text and any(map(shape_of, item))
 
 
-def _columns(document: Any, depth: int = DEEPEST) -> dict[str, list[Any]]:
+def _columns(document: Any, depth: int = MOST_LEVELS) -> dict[str, list[Any]]:
     """Return name -> list over time, from a document and the tables in it.
 
     pandas' `to_json` writes such a list as a table whose keys are row numbers.
@@ -184,7 +184,7 @@ def _frames(document: Any) -> list[Any]:
     return [document]
 
 
-def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
+def _faces(frame: Any, depth: int = MOST_LEVELS) -> list[dict[str, float]]:
     """Return the faces in a frame, each as written name -> score; depth: levels of tables."""
     if isinstance(frame, dict):
         plain = {key: item for key, item in frame.items() if not isinstance(item, dict | list)}
@@ -205,7 +205,7 @@ def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
     return []
 
 
-def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
+def _flat(frame: Any, depth: int = MOST_LEVELS) -> dict[str, Any]:
     """Return the keys and values of a frame without its faces, also from tables with faces."""
     if isinstance(frame, list):
         frame = frame[0] if len(frame) == 1 else {}
@@ -325,4 +325,4 @@ def _number(value: Any) -> float:
         number = float(without_percent(value.strip()) if isinstance(value, str) else value)
     except (ValueError, OverflowError):
         return math.nan
-    return number if abs(number) < LARGEST else math.nan
+    return number if abs(number) < LARGEST_NUMBER else math.nan

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from .angles import in_degrees
 from .gaps import take_from_rows
-from .names import NONSENSE, angle_of, shape_of, unit_of, viseme_of
+from .names import LARGEST_VALUE, angle_of, shape_of, unit_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
 from .take import Take, TakeRequest
 from .timing import times_of
@@ -27,7 +27,7 @@ from .values import (
 
 # [degrees] by which eyeballs turn outward while eyes look ahead, in the app's files and packets, as
 # the axes of real eyes do.
-OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
+OUTWARD_ANGLES = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 
 
 @dataclass
@@ -128,9 +128,9 @@ def read(table: Table, request: TakeRequest) -> Take:
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: numbers[name] for name in only_present}
     visemes = {name: numbers[name] for name in columns.visemes}
-    channels |= from_percent(visemes, NONSENSE, "Visemes", notes)
+    channels |= from_percent(visemes, LARGEST_VALUE, "Visemes", notes)
     is_known = is_live_link(table.names)
-    outward = OUTWARD if is_known else {}
+    outward = OUTWARD_ANGLES if is_known else {}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
     if columns.angles and not is_known:
         notes.append(

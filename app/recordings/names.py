@@ -40,7 +40,7 @@ ARKIT = (
 )  # fmt: skip
 """The 52 shapes in ARKit's order, which packets without names use."""
 
-NONSENSE = 3.0  # a larger value is an error
+LARGEST_VALUE = 3.0  # a larger value is an error
 LARGEST_ANGLE = 360.0  # [degrees]; a larger one is an error
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
@@ -59,7 +59,7 @@ _SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
 
 def measured(name: str, values: Floats64) -> Floats64:
     """Return the values of a channel, with NaN for values too large for a measurement."""
-    largest = LARGEST_ANGLE if name in ANGLES else NONSENSE
+    largest = LARGEST_ANGLE if name in ANGLES else LARGEST_VALUE
     return np.where(np.abs(values) > largest, np.nan, values)
 
 

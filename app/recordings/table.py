@@ -1,7 +1,7 @@
 """Reading of a table from a text: names above columns, with commas, tabs or blanks between cells.
 
 Plain lines stay as they are. The csv module divides other lines, with blanks between cells, quoted
-cells or decimal commas; their cells are joined again with `CLEAN` between them.
+cells or decimal commas; their cells are joined again with `CELL_SEPARATOR` between them.
 
 `numpy.loadtxt`, whose parser is compiled, reads the numbers: ten minutes at 60 frames a second
 (36000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but they are 80 MB or
@@ -26,11 +26,11 @@ from ..errors import UserError
 from ..text import counted
 from .take import TakeRequest
 
-LARGEST = 1e30  # a larger number is an error; nanoseconds since 1970 are 1.8e18
+LARGEST_NUMBER = 1e30  # a larger number is an error; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
 MOST_LISTED = 8  # faces that a message lists
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
-CLEAN = "\x1f"  # the unit separator of ASCII, which no cell holds
+CELL_SEPARATOR = "\x1f"  # the unit separator of ASCII, which no cell holds
 DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.IGNORECASE)
 
 
@@ -88,7 +88,7 @@ class Layout:
 
     def clean(self, cell: str) -> str:
         """Return a cell with a decimal point, without line ends and without blanks at its ends."""
-        cell = " ".join(cell.replace(CLEAN, " ").split())
+        cell = " ".join(cell.replace(CELL_SEPARATOR, " ").split())
         if self.has_decimal_commas and DECIMAL_COMMA.fullmatch(cell.rstrip(" %")):
             cell = cell.replace(".", "").replace(",", ".")
         return without_percent(cell)
@@ -151,14 +151,14 @@ class Table:
             values = np.loadtxt(self.lines, ndmin=2, **form)
         except ValueError:  # not all are numbers
             values = np.genfromtxt(self.lines, **form).reshape(len(self.lines), len(columns))
-        none = np.argwhere(~(np.abs(values) < LARGEST))
+        none = np.argwhere(~(np.abs(values) < LARGEST_NUMBER))
         for row, place in none[:1]:
             self.notes.append(
                 f"{counted(len(none), 'cell')} {'holds' if len(none) == 1 else 'hold'} no usable "
                 f"number, the first in line "
                 f"{self.line_numbers[row]}, column '{self.names[columns[place]]}'."
             )
-        return np.where(np.abs(values) < LARGEST, values, np.nan)
+        return np.where(np.abs(values) < LARGEST_NUMBER, values, np.nan)
 
 
 def header_of(text: str) -> tuple[str, ...]:
@@ -187,7 +187,7 @@ def table_in(text: str, *, source: str) -> Table:
         delimiter = layout.delimiter
         rows = [(number, line.count(delimiter) + 1, line) for number, line in numbered[1:]]
     else:
-        delimiter = CLEAN
+        delimiter = CELL_SEPARATOR
         rows = _cleaned(numbered[1:], layout, notes)
     if len(rows) > 1 and rows[-1][1] < len(names):
         notes.append(f"The last row, line {rows.pop()[0]}, is torn and was left out.")
@@ -300,7 +300,7 @@ def _cells_of(line: str, layout: Layout) -> list[str]:
 def _cleaned(
     numbered: Sequence[tuple[int, str]], layout: Layout, notes: list[str]
 ) -> list[tuple[int, int, str]]:
-    """Return line number, count of cells and text of each row, with `CLEAN` between cells.
+    """Return line number, count of cells and text of each row, with `CELL_SEPARATOR` between cells.
 
     A line with an unclosed quote is left out and noted; no other row is lost.
     """
@@ -331,7 +331,7 @@ def _rows_in(
             is_closed = not cells[-1].endswith("\n")
             if any("\n" in cell and layout.delimiter in cell for cell in cells):
                 return None
-            rows.append((number, len(cells), CLEAN.join(map(layout.clean, cells))))
+            rows.append((number, len(cells), CELL_SEPARATOR.join(map(layout.clean, cells))))
     except csv.Error:  # a cell of more than 128 KiB
         return None
     return rows if is_closed else None

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..text import counted
-from .names import ARKIT, NONSENSE, letters_of, measured
+from .names import ARKIT, LARGEST_VALUE, letters_of, measured
 
 Rows = npt.NDArray[np.bool_]
 
@@ -81,7 +81,7 @@ def shares(shapes: Mapping[str, Floats64], notes: list[str]) -> dict[str, Floats
 
     If the face of a take is never at 0, rows of zeros are rows without a face, and become NaN.
     """
-    found = from_percent(shapes, NONSENSE, "Shapes", notes)
+    found = from_percent(shapes, LARGEST_VALUE, "Shapes", notes)
     far = 0
     beyond = 0
     for name, values in found.items():

@@ -24,7 +24,7 @@ Splits = npt.NDArray[np.uint8]
 CUBIC = "cubic"
 DETAIL = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
-OF = "."  # mark between a criterion and its option
+OPTION_MARK = "."  # mark between a criterion and its option
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -99,7 +99,7 @@ def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
             if part in refine.criteria.available():
                 for option in refine.criteria.options(part):
                     if option.name not in found:
-                        found[f"{part}{OF}{option.name}"] = option
+                        found[f"{part}{OPTION_MARK}{option.name}"] = option
     return {name: option for name, option in found.items() if option.kind != "object"}
 
 
@@ -117,12 +117,12 @@ def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
 
     Raises ValueError for a value that a criterion refuses.
     """
-    plain = {name: value for name, value in options.items() if OF not in name}
+    plain = {name: value for name, value in options.items() if OPTION_MARK not in name}
     if len(plain) == len(options):
         return plain
     made: list[str | refine.Criterion] = []
     for part in str(plain.get("criterion", PAPERS_CRITERION)).split("+"):
-        start = f"{part}{OF}"
+        start = f"{part}{OPTION_MARK}"
         own = {name.removeprefix(start): options[name] for name in options if start in name}
         for option in refine.criteria.options(part) if own else ():
             if option.name in own:

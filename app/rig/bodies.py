@@ -18,7 +18,7 @@ from ..stopping import cleaned_up_if_stopped
 from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
 
 EYES = ("eye_left", "eye_right")  # names of bones
-LEAST = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
+LEAST_MOTION = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
 
 
 class Body(Protocol):
@@ -134,7 +134,7 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
         moved = body.at(pose)
         before = body.at(base)
         change = moved - before
-        change[np.linalg.norm(change, axis=1) < LEAST] = 0.0
+        change[np.linalg.norm(change, axis=1) < LEAST_MOTION] = 0.0
         if not change.any():
             continue
         targets[number] = change

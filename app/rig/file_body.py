@@ -31,7 +31,7 @@ from .pieces import FilePiece
 from .poses import CRANIUM, Pose
 
 LIP_HEIGHT = 10.0  # [mm]; height over which motion changes from one jaw to the other
-ROOTED = 1.5  # [mm]; roots of lashes may be this much farther from the skin than the nearest root
+ROOT_TOLERANCE = 1.5  # [mm]; how much farther from the skin than the nearest root lashes may begin
 TONGUE = "tongue"  # name of a part
 TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the file
 
@@ -142,7 +142,7 @@ class FileBody:
         roots = np.zeros(len(indices), np.int32)
         for each in np.unique(piece):
             members = np.flatnonzero(piece == each)
-            near = members[distance[members] < distance[members].min() + ROOTED]
+            near = members[distance[members] < distance[members].min() + ROOT_TOLERANCE]
             roots[members] = near[scipy.spatial.cKDTree(points[near]).query(points[members])[1]]
         local_index = np.full(len(self.rest), -1, np.int32)
         local_index[indices] = np.arange(len(indices))

@@ -29,7 +29,7 @@ from .surface import METRES
 UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
 MOST_OFF = 1.25
 CLAMP_TO_EDGE = 33071
-SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex index
+LARGEST_SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex index
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class FileMeshWriter:
         more: dict[str, Any],
     ) -> list[dict[str, Any]]:
         """Make a primitive for each material of the n chosen triangles; corners: (n, 3)."""
-        short = np.uint16 if corners.max(initial=0) < SHORT else np.uint32
+        short = np.uint16 if corners.max(initial=0) < LARGEST_SHORT else np.uint32
         materials = self._painted.material[chosen]
         primitives = []
         for material in np.unique(materials):

@@ -26,7 +26,7 @@ from risorius.geometry.arrays import Floats32, Integers
 from .bodies import Shaped
 from .glb import Glb, picture_kind
 
-TAKEN = ".risorius"  # appended to the name of a shape if the file already has a shape of this name
+NAME_SUFFIX = ".risorius"  # appended to the name of a shape if the file already has it
 
 
 def read_document(content: bytes, folder: Path) -> tuple[dict[str, Any], bytes]:
@@ -159,7 +159,7 @@ class GltfShapes:
         written = mesh.setdefault("extras", {})
         known = list(written.get("targetNames", []))
         known += [f"target_{place}" for place in range(len(known), old)]
-        added = [name + TAKEN if name in known else name for name in names]
+        added = [name + NAME_SUFFIX if name in known else name for name in names]
         written["targetNames"] = [*known, *added]
         written.update(extras)
         mesh["weights"] = [*mesh.get("weights", [0.0] * old), *[0.0] * len(names)]

@@ -32,8 +32,8 @@ PAIRS = (  # sums of shapes that move the same skin
     ("eyeBlinkLeft", "eyeLookDownLeft"),
     ("noseSneerLeft", "mouthUpperUpLeft"),
 )
-TRIED = 4  # number of simulated pairs per chosen pair
-OPPOSITE = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
+CANDIDATES = 4  # number of simulated pairs per chosen pair
+OPPOSITES = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 
 
 @dataclass(frozen=True)
@@ -134,10 +134,10 @@ def worth_correcting(
 ) -> list[tuple[str, str]]:
     """Return at most `count` pairs of shapes whose sums have the greatest errors, greatest first.
 
-    TRIED times `count` pairs are simulated: those whose shapes have most skin in common.
+    CANDIDATES times `count` pairs are simulated: those whose shapes have most skin in common.
     """
     sums = Sums(scene, poses)
-    tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: TRIED * count]
+    tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: CANDIDATES * count]
     bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         found = [(sums.difference(pair), pair) for pair in bar]
@@ -172,7 +172,7 @@ def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[
 
 def _are_opposite(first: str, second: str) -> bool:
     """Whether two shapes exclude each other, or move two sides that hardly share skin."""
-    if (first, second) in OPPOSITE or (second, first) in OPPOSITE:
+    if (first, second) in OPPOSITES or (second, first) in OPPOSITES:
         return True
     if twin_of(first) == second and not first.startswith("mouth"):
         return True

@@ -25,7 +25,7 @@ from risorius.geometry.arrays import Floats64
 from .avatar import Avatar, FileHead
 from .surface import METRES
 
-OWN = re.compile(r"\w[\w.]*\.obj")  # names of files that this module writes
+OBJ_NAMES = re.compile(r"\w[\w.]*\.obj")  # names of files that this module writes
 ELEMENT = re.compile(rb"(?m)^[ \t]*([vf])[ \t]+([^\r\n#]*)")
 VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 

@@ -36,7 +36,7 @@ ROLES = {  # role of a piece -> its motion
 }
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks without the jaw line
-BESIDE = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
+FACE_MARGIN = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
 CHIN = 8  # landmark
 LOWER_LIP = 57  # landmark below the centre of the lower lip
 NOSE_BRIDGE = 27  # landmark
@@ -139,7 +139,9 @@ def _is_on_face(
     distance: distances of the points from the skin [mm], (n,). landmarks: [mm], (68, 3).
     """
     face = landmarks[FACE]
-    is_on_face = (centre > face.min(axis=0) - BESIDE) & (centre < face.max(axis=0) + BESIDE)
+    is_on_face = (centre > face.min(axis=0) - FACE_MARGIN) & (
+        centre < face.max(axis=0) + FACE_MARGIN
+    )
     # Glasses span both eyes and hang in front of them.
     is_in_front = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
     # Lashes are shorter than 20 mm.

@@ -17,7 +17,7 @@ from ..recordings.names import ARKIT, VISEMES
 from ..scenes import FaceScene
 
 KINDS = ("arkit", "units", "visemes", "expressions")
-STILL = 0.001  # [mm] per step; a face that moves less is at rest
+STILL_STEP = 0.001  # [mm] per step; a face that moves less is at rest
 CRANIUM = "cranium"  # name of a bone
 HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
@@ -70,7 +70,7 @@ def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
     for _ in range(120):  # most faces need a fifth of these steps
         scene.step(1.0 / 60.0)
         moved = float(np.abs(scene.positions - before).max())
-        calm = calm + 1 if moved < STILL else 0
+        calm = calm + 1 if moved < STILL_STEP else 0
         if calm == 3:  # because motion that reverses is slow for a single step
             break
         before[:] = scene.positions

@@ -21,7 +21,7 @@ from ..scenes import FaceScene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from .curves import shape_curves
-from .linearity import TRIED, Difference, Sums
+from .linearity import CANDIDATES, Difference, Sums
 from .poses import Pose, pose_of, rest_in
 
 FRAMES_PER_SECOND = 15.0  # rate at which the take is sampled
@@ -83,7 +83,7 @@ def worth_correcting_on(
         for pair in sums.pairs
     }
     together = [pair for pair, share in played.items() if share > 0.0]
-    tried = sorted(together, key=lambda pair: -played[pair])[: TRIED * count]
+    tried = sorted(together, key=lambda pair: -played[pair])[: CANDIDATES * count]
     if not tried:
         return []
     displacements = []

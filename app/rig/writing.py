@@ -19,7 +19,7 @@ from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
 from .gltf_copy import GltfShapes, read_document
 from .gltf_lips import cut_primitives, vertices_of
-from .obj_folder import OWN, write_obj_folder
+from .obj_folder import OBJ_NAMES, write_obj_folder
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
@@ -35,7 +35,7 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
     number of files in the folder.
     """
     if is_folder:
-        with folder_atomically(output, OWN, overwrite=False) as folder:
+        with folder_atomically(output, OBJ_NAMES, overwrite=False) as folder:
             write_obj_folder(avatar, folder)
         files = [path for path in output.rglob("*") if path.is_file()]
         return sum(path.stat().st_size for path in files), 1 + len(avatar.names)

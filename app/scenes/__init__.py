@@ -19,17 +19,17 @@ from risorius.assets.identities import person_called, person_in_words
 
 from ..control_names.limits import Limits
 from ..errors import UserError
-from .drawable import BARE, Drawable, Framing, SkinImages
-from .face import BUILT_IN, OWN, FaceScene
+from .drawable import NO_IMAGES, Drawable, Framing, SkinImages
+from .face import BUILT_IN, OWN_HEAD, FaceScene
 from .face_under_skin import Face
 from .plane import PlaneScene
 from .scene import Scene
 
 __all__ = [
-    "BARE",
     "BUILT_IN",
     "COARSE",
-    "OWN",
+    "NO_IMAGES",
+    "OWN_HEAD",
     "SCENES",
     "Drawable",
     "Face",

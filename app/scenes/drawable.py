@@ -44,7 +44,7 @@ class SkinImages:
     fade: Floats32 | None = None
 
 
-BARE = SkinImages()
+NO_IMAGES = SkinImages()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Drawable:
         faces: Integers32,
         rest_positions: Points,
         *,
-        skin: SkinImages = BARE,
+        skin: SkinImages = NO_IMAGES,
         face: Face | None = None,
     ) -> None:
         self.name = name

@@ -27,7 +27,7 @@ from .scene import Scene
 from .skin_part import SkinPart
 
 BUILT_IN = "built-in"  # name of the included head
-OWN = "own"  # name of a user's head
+OWN_HEAD = "own"  # name of a user's head
 LONGEST_STEP = 1.0 / 60.0  # [s]: longest step of the simulation, at any frame rate
 
 
@@ -50,7 +50,9 @@ class FaceScene(Scene):
         rest = face.rest_positions
         super().__init__(self.name, faces, rest, skin=_images_of(self.head), face=face)
         self.landmarks = self.head.landmarks
-        self.called = BUILT_IN if isinstance(self.head, assets.Head) else self.head.called or OWN
+        self.called = (
+            BUILT_IN if isinstance(self.head, assets.Head) else self.head.called or OWN_HEAD
+        )
         self._parts = _parts_of(self.head, rest, faces)
         self._are_bent = False  # whether parts have the face's current shape
         self.framing = self._framing()

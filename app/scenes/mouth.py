@@ -33,11 +33,11 @@ class Gloom(NamedTuple):
 
 # Chosen by eye. Light on a molar is reddish, because flesh has reflected it. Little light is lost:
 # dark molars would look broken, or missing at the corner of the mouth.
-REDDENED = (0.9, 1.2, 1.25)
+REDDENING = (0.9, 1.2, 1.25)
 GUMS = Gloom(2.0, 34.0, 0.2)
 TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
-UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED)
-LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENED)
+UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENING)
+LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENING)
 # The file's gums are nearly black in the notches between crowns, which are light. In the corner of
 # a smile these notches were dark shapes. Gums keep this exponent of their painted shade.
 GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of the file

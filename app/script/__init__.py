@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.geometry.arrays import Flags, Floats64
-from risorius.schema import REST, OneOf, Record, Within, called
+from risorius.schema import REST_KEY, OneOf, Record, Within, called
 
 from ..control_names import meant_by
 from ..control_names.limits import ControlValues, Limits
@@ -33,9 +33,9 @@ Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 DECIMALS = 6  # to which numbers from sliders and clocks are rounded
 LONGEST_FILE = 2**25  # [bytes], about three quarters of an hour of a recorded face
 POSE_SECONDS = 1.0  # duration of a script that is one pose
-LARGEST = 86_400.0  # largest number in a script; as a time [s] it is a day
-Number = Annotated[float, Within(-LARGEST, LARGEST)]
-Moment = Annotated[float, Within(0.0, LARGEST)]
+LARGEST_NUMBER = 86_400.0  # largest number in a script; as a time [s] it is a day
+Number = Annotated[float, Within(-LARGEST_NUMBER, LARGEST_NUMBER)]
+Moment = Annotated[float, Within(0.0, LARGEST_NUMBER)]
 EasingName = Annotated[str, OneOf(easing_names, ALLOWED)]
 
 
@@ -181,7 +181,7 @@ class Pose(Record):
     """A pose of all controls at `time` [s], approached by `easing`; unnamed controls are 0."""
 
     time: Moment
-    values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
+    values: Annotated[Mapping[str, Number], called(REST_KEY)] = field(default_factory=dict)
     easing: EasingName = "smooth"
     name: str | None = None  # a named pose gets a picture on a contact sheet
 

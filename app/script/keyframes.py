@@ -16,13 +16,13 @@ import numpy.typing as npt
 
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from . import DECIMALS, LARGEST, Channel, Key, Pose, Script, rounded
+from . import DECIMALS, LARGEST_NUMBER, Channel, Key, Pose, Script, rounded
 from .easings import easing_named
 from .key_sets import KeySet, is_any_of
 
 POSES = ""  # the track of whole poses; any other track has its control's name
 FRAME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
-SAME = 1e-6  # values, or times [s], that differ by less are equal
+TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
@@ -51,15 +51,17 @@ def time_beyond(script: Script, time: float, direction: int) -> float:
     """Return the next key time [s], or the previous one for direction -1; else `time`."""
     all_times = all_keys(script).times.values()
     if direction > 0:
-        later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)
+        later = (
+            times[np.searchsorted(times, time + TOLERANCE, "right") :][:1] for times in all_times
+        )
         return float(min(np.concatenate([*later, []]), default=time))
-    earlier = (times[: np.searchsorted(times, time - SAME)][-1:] for times in all_times)
+    earlier = (times[: np.searchsorted(times, time - TOLERANCE)][-1:] for times in all_times)
     return float(max(np.concatenate([*earlier, []]), default=time))
 
 
 def pose_at(script: Script, time: float) -> Pose | None:
     """Return the pose at exactly this time [s], or None."""
-    return next((pose for pose in script.poses if abs(pose.time - time) < SAME), None)
+    return next((pose for pose in script.poses if abs(pose.time - time) < TOLERANCE), None)
 
 
 # Changes
@@ -141,12 +143,12 @@ def raised(
 def with_duration(script: Script, seconds: float) -> Script:
     """Change the duration [s] of a script, which still includes all named poses."""
     ends = [pose.time for pose in script.key_poses]
-    return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
+    return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST_NUMBER))
 
 
 def differing(script: Script, time: float, values: ControlValues) -> list[str]:
     """Return the controls whose values differ from the script's values at `time` [s]."""
-    is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > SAME
+    is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > TOLERANCE
     return [name for name, differs in zip(values, is_away.tolist(), strict=True) if differs]
 
 
@@ -168,7 +170,7 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     possible = values.limits.pose(wanted)
     posed = {name: rounded(possible[name]) for name in wanted}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
-    keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    keys = {name: value for name, value in rest.items() if abs(value - added[name]) > TOLERANCE}
     present = pose_at(script, time)
     nonzero = {name: value for name, value in posed.items() if value}
     if present:
@@ -205,8 +207,8 @@ def with_keys_of(
         poses = tuple(pose if each is present else each for each in script.poses)
         script = replace(script, poses=poses)
     new = {name: 0.0 for name in keys if name not in script.tracks}
-    earlier = [pose.time for pose in script.poses if pose.time < time - SAME]
-    later = [pose.time for pose in script.poses if pose.time > time + SAME]
+    earlier = [pose.time for pose in script.poses if pose.time < time - TOLERANCE]
+    later = [pose.time for pose in script.poses if pose.time > time + TOLERANCE]
     for end in (*earlier[-1:], *later[:1]):
         script = _with_track_keys(script, end, new)
     return _reaching(_with_track_keys(script, time, keys), time)
@@ -217,7 +219,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     changed = {}
     for name, value in values.items():
         track = script.tracks.get(name, Channel([], []))
-        present = np.flatnonzero(np.abs(track.times - time) < SAME)
+        present = np.flatnonzero(np.abs(track.times - time) < TOLERANCE)
         later = np.flatnonzero(track.times > time)
         key_time = float(track.times[present[0]]) if len(present) else time
         after = present if len(present) else later
@@ -262,7 +264,7 @@ def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
 
 def _joined(there: Columns, arriving: Columns) -> Columns:
     """Merge keys in the order of time; an arriving key replaces an old key at the same time."""
-    left = _picked(there, ~is_any_of(there[0], arriving[0], SAME))
+    left = _picked(there, ~is_any_of(there[0], arriving[0], TOLERANCE))
     if not len(left[0]):
         return arriving
     both = tuple(np.concatenate(pair) for pair in zip(left, arriving, strict=True))

@@ -31,7 +31,7 @@ from ..errors import UserError
 from ..files import read_text, save_text
 from ..text import as_text, in_one_line
 from . import (
-    LARGEST,
+    LARGEST_NUMBER,
     LONGEST_FILE,
     POSE_SECONDS,
     Channel,
@@ -78,7 +78,7 @@ def _channel_of_lines(text: str) -> Channel:
                 f"an easing: {ALLOWED}"
             ) from None
     channel = Channel(times, values, np.array(easings).reshape(-1, 3))
-    is_wrong = ~(np.abs(channel.values) <= LARGEST) | ~(channel.times <= LARGEST)
+    is_wrong = ~(np.abs(channel.values) <= LARGEST_NUMBER) | ~(channel.times <= LARGEST_NUMBER)
     for place in np.flatnonzero(is_wrong | (channel.times < 0.0))[:1].tolist():
         read(Key, {"time": times[place], "value": values[place]}, f"key {place + 1}")
     _check_order("key", channel.times)
@@ -167,7 +167,7 @@ def preface_of(text: str) -> str:
     return "\n".join(comments)
 
 
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def save_script(target: Path, script: Script) -> None:
@@ -276,4 +276,4 @@ def _quoted(text: str) -> str:
 
 
 def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else _quoted(name)
+    return name if _BARE_KEY.fullmatch(name) else _quoted(name)

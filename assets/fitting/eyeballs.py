@@ -12,7 +12,7 @@ import numpy as np
 
 from ...geometry.arrays import Floats64
 
-FEWEST = 4  # fewest vertices of an eyeball; smaller pieces are strands or cards of hair
+FEWEST_VERTICES = 4  # fewest vertices of an eyeball; smaller pieces are strands or cards of hair
 
 
 def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
@@ -20,7 +20,7 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
 
     centre, radius: an estimate of the eyeball [mm].
     """
-    if len(points) < FEWEST:
+    if len(points) < FEWEST_VERTICES:
         return False
     low = points.min(axis=0)
     high = points.max(axis=0)
@@ -91,7 +91,7 @@ def ball_of_socket(
     away = np.linalg.norm(skin - centre, axis=1)
     shell = skin[(away < most_radii * radius) & (outward < facing)]
     is_rear = shell[:, 2] < centre[2] - 0.5 * radius
-    if is_rear.sum() < FEWEST * FEWEST or is_rear.all():
+    if is_rear.sum() < FEWEST_VERTICES * FEWEST_VERTICES or is_rear.all():
         return None
     middle, _ = sphere_of(shell, centre, radius)
     if middle is centre:

@@ -32,7 +32,7 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 
 # Outer corners of the eyes, tip of the nose, corners of the mouth. Everybody finds these landmarks,
 # and they are far apart in every direction.
-FIRST = (36, 45, 30, 48, 54)
+FIRST_LANDMARKS = (36, 45, 30, 48, 54)
 
 Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> point (3,) [unit of the mesh]
 
@@ -40,8 +40,8 @@ Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> point (3,) [unit 
 def guess(mesh: Mesh, known: Known) -> Floats64:
     """Guess all 68 landmarks on a mesh; returns points [unit of the mesh], (68, 3).
 
-    known: placed landmarks, at least those in `FIRST`, which are returned unchanged. If they form
-    no face, raises AssetError.
+    known: placed landmarks, at least those in `FIRST_LANDMARKS`, which are returned
+    unchanged. If they form no face, raises AssetError.
     """
     head = load("head")
     similarity = placing(known)
@@ -79,7 +79,7 @@ def placing(known: Known) -> Similarity:
     right = "right is the subject's own, on your left where the face looks at you"
     most_mean_distance = 14.0  # [mm] between known landmarks and those of the built-in head
     if off.mean() > most_mean_distance:
-        right_and_left = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}
+        right_and_left = {"eyes": FIRST_LANDMARKS[:2], "corners of the mouth": FIRST_LANDMARKS[3:]}
         for pair, (a, b) in right_and_left.items():
             other, less = _landmark_similarity({**known, a: known[b], b: known[a]})
             if less.mean() <= most_mean_distance and not other.is_mirrored:

@@ -39,8 +39,8 @@ from .mesh_validation import SkinPiece, with_seams_joined
 from .warp import nearest_on
 
 COUNT = 68
-KEY = "landmarks"  # key of the landmarks, if the file has several lists
-GUESSED = "guessed"
+LIST_KEY = "landmarks"  # key of the landmarks, if the file has several lists
+GUESSED_KEY = "guessed"
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
@@ -89,7 +89,7 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
         are_indices = _are_indices(found)
         count = len(mesh.vertices)
         points = mesh.vertices[_indices(found, count)] if are_indices else _points(found)
-        guessed = document.get(GUESSED) if isinstance(document, dict) else None
+        guessed = document.get(GUESSED_KEY) if isinstance(document, dict) else None
         guesses = guessed if isinstance(guessed, list) else []
         is_guessed = frozenset(number for number in marked if number in guesses)
         return {number: points[number] for number in marked}, is_guessed
@@ -103,7 +103,7 @@ def landmarks_text(points: Mapping[int, Sequence[float]], guessed: Iterable[int]
     points: number of the landmark -> point. guessed: numbers of guessed landmarks.
     """
     rows = ",\n    ".join(json.dumps(points.get(number)) for number in range(COUNT))
-    return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
+    return f'{{\n  "{LIST_KEY}": [\n    {rows}\n  ],\n  "{GUESSED_KEY}": {sorted(guessed)}\n}}\n'
 
 
 class UnfinishedError(AssetError):
@@ -119,21 +119,23 @@ def _document(path: Path) -> Any:
     try:
         return parsed_json(content)  # in UTF-8, 16 or 32, with a byte order mark or without
     except ValueError as error:
-        raise AssetError(f'{error}; it must be {{"{KEY}": [...]}} with {COUNT} entries') from None
+        raise AssetError(
+            f'{error}; it must be {{"{LIST_KEY}": [...]}} with {COUNT} entries'
+        ) from None
 
 
 def _all_in(document: Any) -> list[Any]:
-    """Find the 68 entries: the list KEY, the first list of 68 entries, or the document itself."""
+    """Find the 68 entries: those of LIST_KEY, the first 68 in a list, or the document."""
     entries = [document]
     if isinstance(document, dict):
-        entries = [document[KEY]] if KEY in document else list(document.values())
+        entries = [document[LIST_KEY]] if LIST_KEY in document else list(document.values())
     lists = [list[Any](each) for each in entries if isinstance(each, list)]
     lists.sort(key=lambda each: len(each) != COUNT)
     if not lists or len(lists[0]) != COUNT:
         has = f"{len(lists[0])} landmarks" if lists else "holds no list"
         raise AssetError(
-            f'{has}; it must be {{"{KEY}": [...]}} with the {COUNT} iBug points in their order, '
-            "vertex indices or points [x, y, z]"
+            f'{has}; it must be {{"{LIST_KEY}": [...]}} with the {COUNT} iBug points in their '
+            "order, vertex indices or points [x, y, z]"
         )
     return lists[0]
 

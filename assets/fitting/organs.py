@@ -24,7 +24,7 @@ from .mouth_walls import WALLS, FittedSkin, within_skin
 from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
-STIFF = ("gums", "teeth", "tongue")  # beginnings of the names of rigid parts
+RIGID_PARTS = ("gums", "teeth", "tongue")  # beginnings of the names of rigid parts
 LID_CLEARANCE = 0.3  # [mm] between the eyeball and the skin of the lids
 RIM_ROWS = 8  # rows of a rim's vertices, from the lids' edge backward
 
@@ -158,7 +158,7 @@ def place_parts(
     for part in known.parts:
         if part.bone in balls:
             placed = _resized(part, *balls[part.bone])
-        elif part.name.startswith(STIFF):
+        elif part.name.startswith(RIGID_PARTS):
             rise = np.array([0.0, rises[part.bone == "mandible"], 0.0])
             placed = _moved(part, replace(mouth, shift=mouth.shift + rise))
         elif part.bone == kept_bone:
@@ -176,7 +176,9 @@ def place_parts(
 def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
     """Find the similarity that moves all rigid parts of the mouth, as one body, behind the skin."""
     found = [
-        part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
+        part.vertices.astype(np.float64)
+        for part in known.parts
+        if part.name.startswith(RIGID_PARTS)
     ]
     mouth_landmarks = slice(48, 68)
     stiff = np.vstack([*found, known.vertices[known.landmarks[mouth_landmarks]]])

@@ -29,7 +29,7 @@ from ...geometry.texels import Texels, rates
 from ..data_files import Image, read_arrays
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
-from ..pictures import LARGEST, Texture
+from ..pictures import LARGEST_SIDE, Texture
 
 SIZE = 1024  # [texels] width and height of maps that are drawn again
 
@@ -248,7 +248,7 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
     if used[0] < 0:
         mean = np.mean([each.mean(axis=(0, 1)) for each in pictures], axis=0)
         pictures.insert(0, np.full((1, 1, 3), mean.round(), np.uint8))
-    width = min(max(each.shape[1] for each in pictures), LARGEST // len(pictures))
+    width = min(max(each.shape[1] for each in pictures), LARGEST_SIDE // len(pictures))
     height = max(each.shape[0] for each in pictures)
     if len(pictures) > 1:
         tiles = [

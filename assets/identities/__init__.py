@@ -22,19 +22,19 @@ from .named import (
     with_colours_of_number,
 )
 from .person import Person, make_person
-from .population import DARKEST, EVERYBODY, LIGHTEST, Population, drawn_irises
+from .population import DARKEST_TONE, EVERYBODY, LIGHTEST_TONE, Population, drawn_irises
 from .shirts import COLLARS, SHIRTS
 from .space import Identity, Sex, sample_identity
 from .wear import FRAMES, wearing
 
 __all__ = [
     "COLLARS",
-    "DARKEST",
+    "DARKEST_TONE",
     "EVERYBODY",
     "FRAMES",
     "GLASSES",
     "HAIR",
-    "LIGHTEST",
+    "LIGHTEST_TONE",
     "MASK",
     "MASKS",
     "NAMED",

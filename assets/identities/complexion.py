@@ -29,7 +29,7 @@ from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
-from ..pigments import BLOOD, OWN, SHADOW, changes_of, paleness_of_lips
+from ..pigments import BLOOD, SHADOW, SHIPPED, changes_of, paleness_of_lips
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
@@ -41,14 +41,14 @@ from .lids import with_folds
 from .long_hair import falling_hair, tied_hair
 from .painted_hair import MOST_COVER, fringe_of, grown_over, shrunk_strands
 from .person import Person
-from .population import DARKEST, LIGHTEST
+from .population import DARKEST_TONE, LIGHTEST_TONE
 from .relief import with_reliefs
 from .sternomastoid import sternomastoids_of
 
 GREY_HAIR = (0.54, 0.52, 0.49)  # sRGB
 LOCKS_LIGHTER = 1.2  # brightness relative to painted hair, which other hair shades
-BEHIND = 30.0  # [mm] behind the hairline per unit of the scalp's map
-IN_FRONT = 10.0  # [mm] in front of the hairline where the map is 0
+SCALP_SCALE = 30.0  # [mm] behind the hairline per unit of the scalp's map
+SCALP_OFFSET = 10.0  # [mm] in front of the hairline where the map is 0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # entries of the table from light to bytes
 BAND = 16  # rows of texels that are coloured together, few enough for the processor's cache
@@ -99,7 +99,7 @@ def recoloured(
 ) -> Image:
     """Recolour the albedo of the built-in head for a skin tone: sRGB, (H, W, 3), uint8.
 
-    - angle: ITA [deg], DARKEST to LIGHTEST; else ValueError.
+    - angle: ITA [deg], DARKEST_TONE to LIGHTEST_TONE; else ValueError.
     - blood: amount relative to most skin of this tone; 0.7 is pale, 1.3 flushed.
     - haired_as: ITA [deg] that decides the colour of hair. Hair begins at the hairline of
       `features`. None: `angle` decides the colour, and hair begins at the built-in hairline.
@@ -110,8 +110,10 @@ def recoloured(
     # This module imports numba, which takes long.
     from ...geometry.tones import Absorbed, Grown, Hairs, absorb, compose
 
-    if not DARKEST <= angle <= LIGHTEST:
-        raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
+    if not DARKEST_TONE <= angle <= LIGHTEST_TONE:
+        raise ValueError(
+            f"angle is {angle}; it must be {DARKEST_TONE:g} (dark) to {LIGHTEST_TONE:g} (light)"
+        )
     tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = changes_of(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
@@ -300,15 +302,17 @@ def _with_hair(
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:
     """Make standing hair for the built-in head, whose texture shows cropped hair there."""
-    behind = np.float32(0.01 * BEHIND) * read_arrays(head.beside("_tints.npz"))["scalp"] - IN_FRONT
+    scalp_map = read_arrays(head.beside("_tints.npz"))["scalp"]
+    behind = np.float32(0.01 * SCALP_SCALE) * scalp_map - SCALP_OFFSET
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
-    return hair_of(OWN_CUT, scalp, to_screen(LOCKS_LIGHTER * to_linear(np.array(OWN.hair))), 1.0)
+    colour = to_screen(LOCKS_LIGHTER * to_linear(np.array(SHIPPED.hair)))
+    return hair_of(OWN_CUT, scalp, colour, 1.0)
 
 
 def _behind(tints: _Tints, features: Features) -> Floats32:
     """Compute distances of texels behind a person's hairline [mm], (H, W); baldness halves them."""
     scalp = tints.scalp
-    behind = np.float32(BEHIND) * scalp - np.float32(IN_FRONT)
+    behind = np.float32(SCALP_SCALE) * scalp - np.float32(SCALP_OFFSET)
     line = features.hairline
     on_scalp = scalp > 0.01
     hairy = np.flatnonzero(on_scalp.any(axis=1))
@@ -336,7 +340,7 @@ def _tints() -> _Tints:
     soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], beard_blur) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
-    bare = np.maximum(light - hair[..., None] * to_linear(OWN.hair).astype(np.float32), 0.0)
+    bare = np.maximum(light - hair[..., None] * to_linear(SHIPPED.hair).astype(np.float32), 0.0)
     skin = arrays["skin"][:3]
     weights = arrays["skin"][3:]
     least_melanin = 0.05

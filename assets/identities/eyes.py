@@ -20,7 +20,7 @@ from ..data_files import read_arrays
 from ..loading import load
 from ..model import Eye, Part
 from ..smooth import smooth_step
-from .population import DARKEST, IRIS_FREQUENCIES, LIGHTEST, ONLY_BROWN
+from .population import DARKEST_TONE, IRIS_FREQUENCIES, LIGHTEST_TONE, ONLY_BROWN
 
 
 class Iris(NamedTuple):
@@ -46,7 +46,7 @@ USUAL_IRIS = Iris()
 
 
 def drawn_iris(
-    years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST
+    years: float, chance: float, random: np.random.Generator, *, angle: float = LIGHTEST_TONE
 ) -> Iris:
     """Choose random irises for a person of this age [years] and skin tone.
 
@@ -56,7 +56,7 @@ def drawn_iris(
     seed = int(chance * 2**31)
     darker, rougher = np.random.default_rng(seed).uniform(0.0, 1.0, 2).tolist()
     late = float(np.clip((years - 20.0) / 55.0, 0.0, 1.0))
-    darker_skin = float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - DARKEST), 0.0, 1.0))
+    darker_skin = float(np.clip((ONLY_BROWN - angle) / (ONLY_BROWN - DARKEST_TONE), 0.0, 1.0))
     return Iris(
         1.5 * lightness - 0.7 - 0.5 * darker_skin,
         0.15 + 0.4 * greyness,

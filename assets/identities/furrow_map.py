@@ -34,7 +34,7 @@ from .lines import Lines
 from .relief import add_to
 
 FULL_DEPTH = 0.8  # [mm]; depth of a furrow that the map stores as 255
-NOWHERE = 1e3  # [mm]; coordinates of texels outside the face
+FAR_AWAY = 1e3  # [mm]; coordinates of texels outside the face
 LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of both slopes and the depth of flat skin
 FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] point in the left orbit where crow's feet would meet
 
@@ -162,7 +162,7 @@ def _places(shrink: int) -> _Places:
     fold *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
     # Remove the lines of the built-in head, except those of the lower lid in the second slot.
     first = 1.0 - near[..., 3] / 255.0
-    is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < NOWHERE)
+    is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < FAR_AWAY)
     taken = is_above.astype(np.float64)
     taken += first * (radius > 8.0) * (radius < 42.0) * (angle > -1.4) * (level > 0.0)
     near[..., :3] = LEVEL + np.maximum(1.0 - taken, 0.0)[..., None] * (near[..., :3] - LEVEL)
@@ -192,7 +192,7 @@ def _face(size: int) -> tuple[slice, slice, Floats64]:
     texels = Texels.within(corners, (size, size))
     spans = [(int(each.min()), int(each.max()) + 1) for each in (texels.rows, texels.columns)]
     rows, columns = (slice(*span) for span in spans)
-    place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), NOWHERE)
+    place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), FAR_AWAY)
     at = texels.rows - rows.start, texels.columns - columns.start
     place[at] = texels.interpolate(head.vertices[head.faces])
     return rows, columns, place

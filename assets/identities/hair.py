@@ -23,11 +23,11 @@ from ...geometry.normals import vertex_normals
 from ..model import Part
 from ..smooth import Points, smooth_step
 from ..topology import quarter
-from .locks import MEAN, SHORT, TIED, locks_on, waves
+from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 
 HAIR = "hair"  # the name of the part
-SLEEK = 0.4  # specular strength of hair that is combed smooth
-FINE = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
+SLEEK_GLOSS = 0.4  # specular strength of hair that is combed smooth
+LENGTHWISE_FACTOR = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
 
 
 @dataclass(frozen=True)
@@ -193,24 +193,24 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     bare_depth = 5.0  # [mm] behind the hairline, where hair that is tied back begins
     first_depth = bare_depth if cut.knot else painted_depth
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
-    along = (FINE if cut.knot else 1.0) * radius * away
+    along = (LENGTHWISE_FACTOR if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
     # Cropped hair shines little: its tips point outward, so no ring of highlights surrounds the
     # whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
-    light = _tones(points, radius * away)
     hair = Part(
         name=HAIR,
-        vertices=(points + MEAN * way).astype(np.float32),
+        vertices=(points + MEAN_PLACE * way).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
-        colours=(light * colour).astype(np.float32),
+        colours=(_tones(points, radius * away) * colour).astype(np.float32),
         bone="cranium",
-        shine=SLEEK if cut.knot else short_shine,
+        shine=SLEEK_GLOSS if cut.knot else short_shine,
         striation=striation.astype(np.float32),
     )
     # Locks at the front are at least this long; longer cuts are combed over the forehead.
-    growth = TIED if cut.knot else replace(SHORT, least=min(2.0 + 0.15 * length * cut.top, 5.5))
+    least = min(2.0 + 0.15 * length * cut.top, 5.5)
+    growth = TIED_HAIR if cut.knot else replace(SHORT_HAIR, least=least)
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
     upward_fraction = 0.8
     hangs = (normals[:, 1] < upward_fraction) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
@@ -228,11 +228,11 @@ def _over_skin(
     """
     clearance = 1.0  # [mm] over the skin
     rising_share = 0.5  # of a strand's length that its tip rises at most, else it stands up
-    outline = points + MEAN * way
+    outline = points + MEAN_PLACE * way
     skin = closest_points(outline, scalp.points, scalp.faces)
     above = ((outline - skin.interpolate(scalp.points)) * normals).sum(axis=1)
     lacking = np.maximum(clearance + skin.interpolate(scalp.covers) - above, 0.0)
-    rise = np.minimum(lacking / MEAN, rising_share * long)
+    rise = np.minimum(lacking / MEAN_PLACE, rising_share * long)
     return np.asarray(way + rise[:, None] * normals)
 
 

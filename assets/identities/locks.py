@@ -18,10 +18,10 @@ from ...geometry.directions import unit_vectors
 from ..model import Part
 from ..smooth import Points, smooth_step
 
-MEAN = 0.6  # fraction of a strand's length at which vertices of layers lie
+MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATIONS = 3  # points along a lock: root, middle and tip
 CORNERS = 2 * STATIONS - 1  # vertices of a lock
-FINEST = 0.05  # [mm]; radius with which a single hair is drawn
+FINEST_RADIUS = 0.05  # [mm]; radius with which a single hair is drawn
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class Growth:
     fringe: float = 3.0
 
 
-SHORT = Growth(5600, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.24, half=0.17)
-TIED = Growth(
+SHORT_HAIR = Growth(5600, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.24, half=0.17)
+TIED_HAIR = Growth(
     count=4400,
     root=0.5,
     tip=1.7,
@@ -63,7 +63,7 @@ TIED = Growth(
     lying=0.9,
     radius=78.0,
 )
-FALLING = Growth(
+FALLING_HAIR = Growth(
     count=500,
     root=0.4,
     tip=3.0,
@@ -88,7 +88,8 @@ TIPS = Growth(
     fringe=1.0,
 )  # of cut hair, on the last millimetres
 INNER_TIPS = replace(TIPS, root=-0.1, tip=1.6)  # seen from within, before the innermost layer
-WOUND = replace(FALLING, count=350, longest=22.0, radius=30.0)  # on a knot, which is rounder
+# Hair on a knot, which is rounder.
+WOUND_HAIR = replace(FALLING_HAIR, count=350, longest=22.0, radius=30.0)
 
 
 def locks_on(hair: Part, growth: Growth) -> Part:
@@ -120,12 +121,12 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     t = np.linspace(0.0, 1.0, STATIONS, dtype=np.float32)[:, None]
     # Locks bend around the head, so their tips hang.
     bend = length**2 / (2.0 * growth.radius) * normal
-    start = root + (growth.root - MEAN) * way
+    start = root + (growth.root - MEAN_PLACE) * way
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
     thin *= 1.0 + 3.0 * upright
-    half = (FINEST + (growth.half - FINEST) * thin)[:, None] * (1.0 - t**2)
+    half = (FINEST_RADIUS + (growth.half - FINEST_RADIUS) * thin)[:, None] * (1.0 - t**2)
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)
     opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)

@@ -21,12 +21,12 @@ from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
-from .locks import FALLING, INNER_TIPS, MEAN, TIPS, WOUND, locks_on
+from .locks import FALLING_HAIR, INNER_TIPS, MEAN_PLACE, TIPS, WOUND_HAIR, locks_on
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
 EDGE, ROUNDED = np.radians([62.0, 50.0])
 HEM = 4.0  # [mm] over which the tips of cut hair thin out
-FULL = 2.0  # density at which all layers are full
+FULL_DENSITY = 2.0  # density at which all layers are full
 VOLUME = 9.0  # [mm] that hair stands off the head
 SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
 DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # tails hang clear of the back
@@ -92,7 +92,7 @@ def falling_hair(
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
-    return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING))
+    return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
 
 
 def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
@@ -205,7 +205,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         height = knot_height * (np.sin(rise) + 0.5) - dimple_depth * np.exp(-((3.0 * thick) ** 2))
         line = root + cut.knot * height * out
         shade = smooth_step(-0.3, -1.0, rise)
-        dense = FULL + 0.0 * t
+        dense = FULL_DENSITY + 0.0 * t
         knot = (3, 13.0, 0.1, 1.8)
         count, wide, deep, turns = knot
     strand_count = 42
@@ -221,7 +221,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     across = count * wide * place[..., 0] / (2.0 * np.pi)
     tied = _layers(HAIR + "_tied", places, across, VOLUME, dense[:, 0], light * colour)
     on_scalp = short.hair_of(cut, scalp, colour, length)
-    locks = locks_on(tied, FALLING if cut.tail else WOUND)
+    locks = locks_on(tied, FALLING_HAIR if cut.tail else WOUND_HAIR)
     return (*on_scalp, from_within(tied, tied.faces), tied, locks)
 
 
@@ -251,7 +251,7 @@ def _layers(
     places: points of the outermost layer, from root to tip [mm], (n, m, 3).
     across: coordinate across the strands [mm], (n, m).
     thick: thickness of all layers together [mm], (n, m).
-    dense: density, 0 to FULL, (n, m).
+    dense: density, 0 to FULL_DENSITY, (n, m).
     colour: sRGB, (n, m, 3).
     slide: distance that layers move along strands for each millimetre outward, (n, m).
     """
@@ -269,19 +269,19 @@ def _layers(
     normals = unit_vectors(normals.reshape(-1, 3) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # fraction of the thickness between the first and the last layer
-    along = short.FINE * _along(places)
-    columns = across, along, layer_share * thick, np.minimum(dense, FULL), slide
+    along = short.LENGTHWISE_FACTOR * _along(places)
+    columns = across, along, layer_share * thick, np.minimum(dense, FULL_DENSITY), slide
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)
     across, along, thick, dense, slide = np.split(rows.reshape(-1, 5), 5, axis=1)
     way = thick * (normals + slide * ahead)
     return Part(
         name=name,
-        vertices=(points - (1.0 - MEAN) * thick * normals).astype(np.float32),
+        vertices=(points - (1.0 - MEAN_PLACE) * thick * normals).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=grid_faces(number),
         colours=np.broadcast_to(colour, shape).reshape(-1, 3).astype(np.float32),
         bone="cranium",
-        shine=short.SLEEK,
+        shine=short.SLEEK_GLOSS,
         striation=np.hstack([across, along, way, dense]).astype(np.float32),
     )
 

@@ -19,11 +19,11 @@ import numpy as np
 
 from ..smooth import smooth_step
 
-LIGHTEST = 70.0  # individual typology angle of skin, ITA [deg]
-DARKEST = -55.0
+LIGHTEST_TONE = 70.0  # individual typology angle of skin, ITA [deg]
+DARKEST_TONE = -55.0
 ONLY_BROWN = 28.0  # ITA [deg] below which blue eyes are rare
-YOUNGEST = 20.0  # [years]
-OLDEST = 75.0
+YOUNGEST_AGE = 20.0  # [years]
+OLDEST_AGE = 75.0
 IRIS_FREQUENCIES = MappingProxyType(
     {"brown": 0.27, "hazel": 0.18, "green": 0.13, "blue": 0.31, "grey": 0.11}
 )
@@ -61,8 +61,8 @@ class Population:
     """
 
     women: float = 0.5
-    ages: tuple[float, float] = (YOUNGEST, OLDEST)
-    tones: tuple[float, float] = (DARKEST, LIGHTEST)
+    ages: tuple[float, float] = (YOUNGEST_AGE, OLDEST_AGE)
+    tones: tuple[float, float] = (DARKEST_TONE, LIGHTEST_TONE)
     irises: Mapping[str, float] = field(default_factory=lambda: IRIS_FREQUENCIES)
     cuts_of_women: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_WOMEN)
     cuts_of_men: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_MEN)

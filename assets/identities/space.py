@@ -41,9 +41,9 @@ from .lines import Lines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
-MOST = 2.5  # standard deviations; random numbers are clipped to this
+MOST_DEVIATIONS = 2.5  # standard deviations; random numbers are clipped to this
 PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] that calipers press, on both sides
-YOUNG = 30.0  # [years] from which age is visible
+AGEING_START = 30.0  # [years] from which age is visible
 # Points of the left half: an anatomical name or the number of a landmark, a direction, the motion
 # in ten years [mm], and the distance of a man's point from the mean of both sexes [mm]. Upward and
 # forward motions are relative to the outer corner of the eye, so that a large head has no low brow.
@@ -149,7 +149,7 @@ class PersonSpace:
 
     def draw(self, sex: Sex, age: float, random: np.random.Generator) -> Floats64:
         """Choose random weights, (k,), for a person of this sex and age [years]."""
-        chance = np.clip(random.normal(size=len(self.modes)), -MOST, MOST)
+        chance = np.clip(random.normal(size=len(self.modes)), -MOST_DEVIATIONS, MOST_DEVIATIONS)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
         unit = np.eye(len(self.modes))
@@ -161,7 +161,7 @@ class PersonSpace:
         asked = mean_firmness * (firmly * rows).T
         held = unit + asked @ rows
         middle = np.linalg.solve(held, asked @ (near_norms * beside))
-        decades = max(age - YOUNG, 0.0) / 10.0
+        decades = max(age - AGEING_START, 0.0) / 10.0
         side = 1.0 if sex is Sex.MAN else -1.0
         far = np.array([decades * older + side * male for _, _, older, male in POINTS])
         # Changes of measures in ten years [standard deviations].
@@ -252,12 +252,12 @@ def sample_identity(
     cuts = population.cuts_of_women if sex is Sex.WOMAN else population.cuts_of_men
     cut = str(random.choice(list(cuts), p=_normalised(cuts)))
     weights = person_space().draw(sex, age, random)
-    sides = np.clip(random.normal(size=len(weights)), -MOST, MOST)
+    sides = np.clip(random.normal(size=len(weights)), -MOST_DEVIATIONS, MOST_DEVIATIONS)
     unevenness = 0.1  # standard deviation of the weights that are added on the left side
     uneven = (0.0 if is_even else unevenness) * sides
     covered, corners, brows = np.clip(random.normal(size=3), -2.0, 2.0)
     furrows = float(np.clip(1.0 + 0.35 * random.normal(), 0.3, 1.7))
-    late = max(age - YOUNG, 0.0) / 10.0
+    late = max(age - AGEING_START, 0.0) / 10.0
     is_woman = sex is Sex.WOMAN
     seen, hooded = np.clip(random.normal(size=2), -2.0, 2.0)
     spread = 1.0 + 0.06 * late

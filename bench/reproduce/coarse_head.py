@@ -28,7 +28,7 @@ from risorius.assets.coarse import coarse_head
 from risorius.geometry.arrays import Flags, Floats64
 
 from ..canvas import CLAY, Canvas, Drawing, Shot, image_table, parts_without_hair
-from ..subjects import SETTLE, fine_simulation, settled_positions
+from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .experiments import Outcome
 
 SEEN_CHANGE = 8.0  # levels of 255: a visible change
@@ -107,7 +107,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     with Canvas(size) as canvas:
         parts = parts_without_hair(scene)
         for expression in ("joy", "surprise", "kiss"):
-            now = settled_positions(simulation, {expression: 1.0}, SETTLE)
+            now = settled_positions(simulation, {expression: 1.0}, SETTLING_FRAMES)
             bones = simulation.bones.transforms()
             cells = []
             for refiner, kept in refiners:

@@ -25,7 +25,7 @@ from risorius.app.scenes import FaceScene
 from risorius.geometry.arrays import Flags, Unsigned8
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, Shot, image_table, parts_without_hair
-from ..subjects import SETTLE, fine_simulation, settled_positions
+from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .border_turn import BorderTurn
 from .experiments import Outcome
 
@@ -150,7 +150,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             Viewpoint("joy", "-30,0,5.2", (-0.1, 0.05)),
         )
         for viewpoint in viewpoints:
-            now = settled_positions(simulation, {viewpoint.expression: 1.0}, SETTLE)
+            now = settled_positions(simulation, {viewpoint.expression: 1.0}, SETTLING_FRAMES)
             lips = now[head.landmarks[48:68]]
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))

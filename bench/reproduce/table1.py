@@ -40,8 +40,8 @@ Points = npt.NDArray[np.float64]
 SIZE = (1280, 720)  # [pixels] of the picture
 SMALL_SIZE = (64, 36)  # so few pixels take almost no time
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
-ALONE = "refinement alone"
-STAGES = (DRAWN, DRAWN_SMALL, ALONE)
+REFINING = "refinement alone"
+STAGES = (DRAWN, DRAWN_SMALL, REFINING)
 """The timed stages, from most to least."""
 
 
@@ -94,7 +94,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         with Canvas(size) as canvas:
             seconds[stage] = timed(partial(draw, canvas), rounds)
     quick_rounds = 10  # rounds without drawing, per round with drawing
-    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
+    seconds[REFINING] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
     return [
         Row.from_seconds(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
         for stage in STAGES

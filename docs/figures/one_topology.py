@@ -14,7 +14,7 @@ from refinement import INK, NEW, PAPER, SECOND, Colour, Diagram
 
 from risorius import assets, refine, sim
 from risorius.app.pictures import Image
-from risorius.bench.subjects import SETTLE, settled_positions
+from risorius.bench.subjects import SETTLING_FRAMES, settled_positions
 from risorius.geometry.arrays import Flags
 from risorius.geometry.directions import unit_vectors
 
@@ -67,7 +67,10 @@ def one_topology() -> Image:
     head = assets.load("head")
     simulation = sim.create(head)
     expressions = ("joy", "surprise")
-    frames = [settled_positions(simulation, head.expressions[each], SETTLE) for each in expressions]
+    frames = [
+        settled_positions(simulation, head.expressions[each], SETTLING_FRAMES)
+        for each in expressions
+    ]
     free = refine.create("kahler", head.faces, head.vertices)
     splits = refine.splits_of_clip(free, frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)

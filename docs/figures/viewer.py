@@ -20,7 +20,7 @@ from risorius.app.pictures import Image
 from risorius.app.script.keyframes import all_keys
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
-from risorius.assets.fitting.guess import FIRST
+from risorius.assets.fitting.guess import FIRST_LANDMARKS
 
 
 def wait_until_settled(viewer: Viewer) -> None:
@@ -91,7 +91,7 @@ def landmarks(viewer: Viewer) -> None:
         viewer.read(mesh)()
     assert viewer.marking_mode is not None
     marking = viewer.marking_mode.marking
-    for number in FIRST:
+    for number in FIRST_LANDMARKS:
         marking.place(number, marking.placing.points(head.vertices[head.landmarks[number]]))
     marking.note()
     marking.current = 50

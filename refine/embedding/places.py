@@ -26,7 +26,7 @@ WRONG_SIDE = 10.0
 """Distance, in mean edge lengths, that is added for a triangle that faces the other way."""
 STEPS = 16
 """Most steps of Newton's method; four are enough on most surfaces."""
-FARTHEST = 1.25
+FARTHEST_RATIO = 1.25
 """Largest distance of a place, relative to the distance of the nearest place. Chosen: the place
 with the point on its normal is rarely the nearest place, but a place much farther away belongs to
 another part of the surface.
@@ -128,7 +128,7 @@ def slide(
             apart, aside = linearise(point, rows, normals, sectors, t, place, columns)
             size = dot(aside, aside)
             if farthest == np.inf:
-                farthest = FARTHEST * apart
+                farthest = FARTHEST_RATIO * apart
             if size < least and apart <= farthest:
                 least = size
                 best_t = t

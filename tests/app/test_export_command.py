@@ -20,7 +20,7 @@ OUTPUTS = {
     for each in FORMATS
     if each.name != "arkit"
 }
-FULL = """
+FULL_DISK = """
 import resource, sys
 from pathlib import Path
 from risorius.app.errors import report_user_errors
@@ -115,7 +115,7 @@ def test_a_full_disk_is_one_line(name, folder):
     output = Path(OUTPUTS[name])
     if output.suffix:
         output.write_text("mine")
-    words = [sys.executable, "-c", FULL, str(output), name]
+    words = [sys.executable, "-c", FULL_DISK, str(output), name]
     result = subprocess.run(words, capture_output=True, text=True, check=False)
     assert result.returncode == 2, result.stderr
     (line,) = result.stderr.splitlines()

@@ -30,7 +30,7 @@ from risorius.geometry.normals import vertex_normals
 from .command_line import positions_in_blender
 from .glb_player import Player
 
-NEAR = 0.1e-3  # [m], as documented
+TOLERANCE = 0.1e-3  # [m], as documented
 SCRIPT = """
 title = "All that moves"
 [[pose]]
@@ -99,7 +99,7 @@ def test_every_vertex_is_where_the_clip_has_it(clip, glb):
     moved = np.ptp(np.stack([clip.skin.at(k) for k in range(clip.frame_count)]), axis=0)
     assert moved.max() > 50.0  # [mm]: a face without motion would fail
     for surface in clip.surfaces:
-        assert farthest(player, clip, surface.name) < NEAR, surface.name
+        assert farthest(player, clip, surface.name) < TOLERANCE, surface.name
         assert np.array_equal(
             player.values(player.primitive(surface.name).indices).reshape(-1, 3), surface.faces
         )
@@ -268,7 +268,7 @@ def test_scenes_without_a_face_are_written_too(tmp_path):
     assert written(clip, tmp_path / "sheet.glb").startswith("0 named targets and ")
     player = Player(tmp_path / "sheet.glb")
     for surface in clip.surfaces:
-        assert farthest(player, clip, surface.name) < NEAR
+        assert farthest(player, clip, surface.name) < TOLERANCE
 
 
 @pytest.mark.blender
@@ -280,7 +280,7 @@ def test_blender_sees_the_same(clip, glb, tmp_path):
         for surface in clip.surfaces:
             expected = np.stack([surface.at(k) for k in range(clip.frame_count)]) / 1000.0
             off = norm(positions[surface.name] - expected, axis=2)
-            assert off.max() < NEAR, surface.name
+            assert off.max() < TOLERANCE, surface.name
 
 
 @pytest.mark.slow

@@ -28,7 +28,7 @@ Points = npt.NDArray[np.float64]
 
 RATE = 24.0  # frames per second
 FRAMES = 8
-NEAR = 1e-3  # [mm], error of single precision at a head's size
+TOLERANCE = 1e-3  # [mm], error of single precision at a head's size
 METRES = 0.001
 SCRIPT = """
 duration = 0.3
@@ -71,7 +71,7 @@ def refined_skins(clip):
 def is_near(found, wanted, unit=1.0):
     """Whether points equal the wanted ones in order; unit: metres per unit of the points."""
     points = np.asarray(found, np.float64)
-    return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < NEAR
+    return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < TOLERANCE
 
 
 # ---------- USD ---------------------------------------------------------------------------------
@@ -194,7 +194,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
         if vtkVersion().GetVTKVersion() >= "9.5":  # from this version on, VTK's lighting uses it
             assert data.GetPointData().GetNormals() is not None
         moved = vtk_to_numpy(data.GetPointData().GetArray("displacement"))
-        assert np.abs(moved - (whole(clip, frame) - rest)).max() < NEAR
+        assert np.abs(moved - (whole(clip, frame) - rest)).max() < TOLERANCE
         corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         surface = vtk_to_numpy(data.GetCellData().GetArray("surface"))
         start = 0

@@ -20,7 +20,7 @@ from risorius.assets.identities import person_called
 from tests.heads import user_head
 
 SIZE = (900, 900)
-MOST = 1.5  # [mm]
+LIMIT = 1.5  # [mm]
 RIGHT_JAW = slice(0, 9)
 LEFT_JAW = slice(8, 17)
 
@@ -82,17 +82,17 @@ def test_mesh_picture_and_label_agree(studio):
         ((42, 45), Segment.LEFT_EYE),
     ):
         off = norm(pixels[list(numbers)] - portrait.ends(segment), axis=1)
-        assert (off * portrait.millimetres[list(numbers)] < MOST).all(), (segment.name, off)
+        assert (off * portrait.millimetres[list(numbers)] < LIMIT).all(), (segment.name, off)
     for numbers, segment in (
         (np.arange(17, 22), Segment.RIGHT_BROW),
         (np.arange(22, 27), Segment.LEFT_BROW),
     ):
         across = np.abs(pixels[numbers[[0, -1]]] - portrait.ends(segment))[:, 0]
-        assert (across * portrait.millimetres[numbers[[0, -1]]] < MOST).all(), segment.name
-        assert (portrait.off_border(numbers, segment) < MOST).all(), segment.name
+        assert (across * portrait.millimetres[numbers[[0, -1]]] < LIMIT).all(), segment.name
+        assert (portrait.off_border(numbers, segment) < LIMIT).all(), segment.name
     lips = [Segment.TOP_LIP, Segment.BOTTOM_LIP]
     border = portrait.off_border([48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59], lips)
-    assert (border < MOST).all(), border
+    assert (border < LIMIT).all(), border
 
 
 def test_the_jaw_lies_on_the_outline_that_is_seen(studio):

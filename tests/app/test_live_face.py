@@ -11,7 +11,7 @@ from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.live.live_face import (
-    CALIBRATING,
+    CALIBRATION_TIME,
     EASING_IN,
     EASING_OUT,
     LOST_AFTER,
@@ -157,7 +157,7 @@ def test_calibrating_takes_the_neutral_face_away(wire):
     for number in range(20):
         blink = {"EyeBlinkLeft": 1.0} if number in (8, 9, 10) else {}
         assert wire.face.is_calibrating
-        wire.take(live_link({**neutral, **blink}), seconds=CALIBRATING / 19.5)
+        wire.take(live_link({**neutral, **blink}), seconds=CALIBRATION_TIME / 19.5)
     assert not wire.face.is_calibrating
     controls = wire.face.controls()
     assert controls["browDownLeft"] == 0.0

@@ -34,7 +34,7 @@ from .glb_player import Player, document
 from .rig_files import LIBRARY, PICTURE, write_whole_head
 
 METRES = 0.001
-SEEN = 0.02  # [mm], an invisible distance
+INVISIBLE = 0.02  # [mm], an invisible distance
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
     for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight", "cheekPuff"):
         moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
         assert np.abs(moved).max() > 3.0
-        assert np.abs(shapes[name] / METRES - moved).max() < SEEN, name
+        assert np.abs(shapes[name] / METRES - moved).max() < INVISIBLE, name
 
 
 def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
@@ -257,7 +257,7 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         assert rule["name"] == "_".join(pair)
         together = rest_in(face, dict.fromkeys(pair, 1.0)).skin - face.rest_positions
         summed = sum(shapes[name] for name in (*pair, rule["name"])) / METRES
-        assert np.abs(summed - together).max() < 5 * SEEN
+        assert np.abs(summed - together).max() < 5 * INVISIBLE
         plain = sum(shapes[name] for name in pair) / METRES
         assert np.abs(plain - together).max() > 3.0
 
@@ -270,7 +270,7 @@ def test_printed_errors_include_the_correctives(face):
     (plain,) = table(face, poses)
     (corrected,) = table(face, {**poses, **corrective_poses(face, [pair])}, [pair])
     assert plain.most > 3.0
-    assert corrected.most < SEEN
+    assert corrected.most < INVISIBLE
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from risorius.app.errors import UserError
-from risorius.app.script import LARGEST, Channel, Key, Pose, Script
+from risorius.app.script import LARGEST_NUMBER, Channel, Key, Pose, Script
 from risorius.app.script.easings import EASINGS, easing_named, easing_names
 from risorius.app.script.script_file import load_script, parse_script, script_text
 from tests.app.command_line import refusal, risorius
@@ -60,10 +60,10 @@ def test_lines_are_keys_as_tables_are():
 def channels(draw):
     """Channels with few and many keys, with one easing and with all."""
     times = draw(
-        st.lists(st.floats(0.0, LARGEST), unique=True, min_size=1, max_size=60).map(sorted)
+        st.lists(st.floats(0.0, LARGEST_NUMBER), unique=True, min_size=1, max_size=60).map(sorted)
     )
     size = {"min_size": len(times), "max_size": len(times)}
-    values = draw(st.lists(st.floats(-LARGEST, LARGEST), **size))
+    values = draw(st.lists(st.floats(-LARGEST_NUMBER, LARGEST_NUMBER), **size))
     easings = draw(
         st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*easing_names()]), **size)
     )
@@ -87,7 +87,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
     assert channel == Channel.from_keys(keys)
     assert len(channel) == len(keys)
     assert [channel.value(key.time) for key in keys] == [key.value for key in keys]
-    time = data.draw(st.floats(0.0, LARGEST))
+    time = data.draw(st.floats(0.0, LARGEST_NUMBER))
     before = [key for key in keys if key.time <= time][-1:] or keys[:1]
     after = [key for key in keys if key.time > time][:1] or before
     share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
@@ -96,7 +96,7 @@ def test_a_channel_has_the_values_of_its_keys(channel, data):
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
 
 
-@given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
+@given(channel=channels(), start=st.floats(0.0, LARGEST_NUMBER), span=st.floats(1e-3, 1e4))
 def test_a_drawn_curve_has_the_played_values(channel, start, span):
     """The drawn curve has the played values; if keys are few, each is drawn."""
     times, values = channel.outline(start, start + span, 40)

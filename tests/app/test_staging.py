@@ -13,7 +13,7 @@ from risorius.app.staging import StagingFolder, is_staging_folder, sweep
 
 def made_old(folder):
     """Set a folder's modification time to more than a day ago."""
-    when = time.time() - staging.OLD - 60.0
+    when = time.time() - staging.LEAST_AGE - 60.0
     for path in (*folder.rglob("*"), folder):
         os.utime(path, (when, when), follow_symlinks=False)
     return folder

@@ -20,7 +20,7 @@ from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.marking import Marking
-from risorius.app.viewer.marking.marking import FIRST, ORDER
+from risorius.app.viewer.marking.marking import FIRST_LANDMARKS, ORDER
 from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
@@ -39,7 +39,7 @@ from .driving import (
     xdotool,
 )
 
-NEAR = 6.0 * METRES  # [m], error of guesses on the built-in head's shape
+GUESS_ERROR = 6.0 * METRES  # [m], error of guesses on the built-in head's shape
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def true_places():
 
 def mark_first(marking):
     """Place the first five landmarks exactly, in the order of the questions."""
-    for number in FIRST:
+    for number in FIRST_LANDMARKS:
         assert marking.current == number
         marking.place(number, marking.placing.points(true_places()[number]))
         marking.note()
@@ -117,7 +117,7 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     `--landmarks` refuses it.
     """
     target = tmp_path / "half.json"
-    for number in FIRST[:3]:
+    for number in FIRST_LANDMARKS[:3]:
         marking.place(number, marking.placing.points(true_places()[number]))
         marking.note()
     assert marking.unsaved
@@ -130,9 +130,9 @@ def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     again = Marking(marking.path, FileDialogs())
     again.open(target)
     assert again.marks == marking.marks
-    assert again.current == FIRST[3]
+    assert again.current == FIRST_LANDMARKS[3]
     assert not again.unsaved
-    for number in FIRST[3:]:
+    for number in FIRST_LANDMARKS[3:]:
         again.place(number, again.placing.points(true_places()[number]))
         again.note()
     again.save()
@@ -221,7 +221,7 @@ class TestInTheWindow:
     def mark_first(self, viewer):
         """Click the first points."""
         self.face_it(viewer)
-        for number in FIRST:
+        for number in FIRST_LANDMARKS:
             assert self.mode(viewer).marking.current == number
             xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
             xdotool(viewer, "click", 1)
@@ -270,7 +270,7 @@ class TestInTheWindow:
         marking = self.mode(viewer).marking
         self.mark_first(viewer)
         assert np.median(off(marking)) < 2.0 * METRES
-        assert off(marking).max() < 2.0 * NEAR
+        assert off(marking).max() < 2.0 * GUESS_ERROR
         before = marking.marks
         number = 37
         start = self.place(viewer, np.array(before.places[number]))

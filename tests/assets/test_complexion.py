@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.assets.identities import (
-    DARKEST,
-    LIGHTEST,
+    DARKEST_TONE,
+    LIGHTEST_TONE,
     Features,
     Sex,
     coloured,
@@ -31,12 +31,12 @@ from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.assets.model import Segment
-from risorius.assets.pigments import OWN
+from risorius.assets.pigments import SHIPPED
 from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
-ANGLES = st.floats(DARKEST, LIGHTEST)
+ANGLES = st.floats(DARKEST_TONE, LIGHTEST_TONE)
 
 
 def light_at(head, image, *names):
@@ -59,7 +59,7 @@ def skin_of(head, image):
 def test_own_tone_is_the_shipped_picture(head):
     """With the tone of the stored picture, the picture equals the file byte by byte."""
     tints = _tints()
-    angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
+    angle = np.interp(-SHIPPED.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
 
@@ -102,7 +102,7 @@ def _texel(head, image, vertex):
     return int((1.0 - v) * image.shape[0]), int(u * image.shape[1])
 
 
-@pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
+@pytest.mark.parametrize("angle", [DARKEST_TONE - 1.0, LIGHTEST_TONE + 1.0, float("nan")])
 def test_no_other_tones(angle):
     """An invalid tone is refused in one line with the allowed values."""
     with pytest.raises(ValueError, match="it must be -55 "):
@@ -173,7 +173,7 @@ def test_a_hairline_is_moved_on_the_scalp_alone():
     """A shifted hairline moves only texels of the scalp, by the plain formula."""
     line = Hairline(front=4.0, temples=7.0, crown=0.6)
     tints = _tints()
-    plain = np.float32(complexion.BEHIND) * tints.scalp - np.float32(complexion.IN_FRONT)
+    plain = np.float32(complexion.SCALP_SCALE) * tints.scalp - np.float32(complexion.SCALP_OFFSET)
     moved = (plain - line.shift(len(plain))) / np.float32(1.6)
     wanted = np.where(tints.scalp > 0.01, moved, plain)
     assert (_behind(tints, Features(hairline=line)) == wanted).all()

@@ -7,7 +7,7 @@ from pytest import approx
 
 from risorius import assets
 from risorius.assets import AssetError
-from risorius.assets.fitting.guess import FIRST, centred, guess
+from risorius.assets.fitting.guess import FIRST_LANDMARKS, centred, guess
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
@@ -19,9 +19,9 @@ JAW = 17  # number of jaw landmarks, which come first and have no exact place al
 
 def errors(mesh, true):
     """Errors of the landmarks guessed from the first five points."""
-    found = guess(mesh, {number: true[number] for number in FIRST})
+    found = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
     off = norm(found - true, axis=1)
-    assert not off[list(FIRST)].max() > 1e-9 * np.abs(true).max()
+    assert not off[list(FIRST_LANDMARKS)].max() > 1e-9 * np.abs(true).max()
     return off
 
 
@@ -61,7 +61,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
     off = errors(mesh, true) / METRES
     assert np.median(off) < 2.0
     assert off[JAW:].max() < 6.0
-    found = guess(mesh, {number: true[number] for number in FIRST})
+    found = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
     skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
     gap = norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
     assert gap.max() < 1e-3 * METRES
@@ -74,7 +74,7 @@ def test_more_points_make_it_better_and_stay():
     mesh = Mesh(person.vertices, person.faces)
     true = person.vertices[person.landmarks]
     few = errors(mesh, true)
-    known = {number: true[number] for number in (*FIRST, 4, 8, 12)}
+    known = {number: true[number] for number in (*FIRST_LANDMARKS, 4, 8, 12)}
     many = norm(guess(mesh, known) - true, axis=1)
     assert many[[*known]].max() < 1e-9
     assert many[:JAW].mean() < 0.7 * few[:JAW].mean()
@@ -93,7 +93,9 @@ def test_points_of_no_face_are_refused(head, order, words):
     """Points in a wrong order are refused in one line."""
     points = head.vertices[head.landmarks][order]
     with pytest.raises(AssetError, match=words) as raised:
-        guess(Mesh(head.vertices, head.faces), {number: points[number] for number in FIRST})
+        guess(
+            Mesh(head.vertices, head.faces), {number: points[number] for number in FIRST_LANDMARKS}
+        )
     assert "\n" not in str(raised.value)
 
 

@@ -10,7 +10,7 @@ from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
 from risorius.assets.identities import built_in_hair, person_called
-from risorius.assets.identities.locks import CORNERS, SHORT, TIED, locks_on
+from risorius.assets.identities.locks import CORNERS, SHORT_HAIR, TIED_HAIR, locks_on
 from risorius.geometry.normals import cross_products
 from risorius.render import Style
 
@@ -29,7 +29,7 @@ def picture(name, view, size=(700, 700)):
         return c.draw_image().astype(np.float64)
 
 
-@pytest.mark.parametrize("growth", [SHORT, TIED])
+@pytest.mark.parametrize("growth", [SHORT_HAIR, TIED_HAIR])
 def test_locks_are_sound_ribbons(growth):
     """The two corners of a station are equally far from its middle; a ribbon ends in a tip."""
     hair = built_in_hair(load("head"))[1]

@@ -73,7 +73,7 @@ def test_scans_are_read(tmp_path):
     fine = assets.load("head").finer(1)
     lift = 0.1 * np.ones_like(fine.vertices)
     np.savez(
-        tmp_path / subjects.DENSE,
+        tmp_path / subjects.DENSE_FILE,
         vertices=fine.vertices / 10.0,
         triangles=fine.faces,
         landmarks68=assets.load("head").landmarks,

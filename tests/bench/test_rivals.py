@@ -29,7 +29,7 @@ def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
     """
     for case in surfaces.values():
         rows = rows_of(case, rivals.OURS)
-        most = rivals.TIMES * len(case.faces)
+        most = rivals.TRIANGLE_RATIO * len(case.faces)
         assert all(row.triangles <= most for row in rows.values())
         before = rows["risorius, not refined"].distance
         assert rows["risorius, cubic where a split moves most"].distance < 0.6 * before
@@ -67,7 +67,7 @@ def test_each_library_that_is_there_refines(method, surfaces):
     pytest.importorskip(method.module, reason="needs the extra 'rivals'")
     for case in surfaces.values():
         (row,) = rows_of(case, [method]).values()
-        assert 0.8 < row.triangles / (rivals.TIMES * len(case.faces)) <= 1.0
+        assert 0.8 < row.triangles / (rivals.TRIANGLE_RATIO * len(case.faces)) <= 1.0
         assert row.distance < 25_000
 
 

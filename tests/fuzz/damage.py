@@ -5,7 +5,7 @@ import random
 from collections.abc import Sequence
 
 SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another seed gives other damage
-MOST = 6  # [damaged places] at most
+MOST_PLACES = 6  # [damaged places] at most
 
 
 def changed(
@@ -19,7 +19,7 @@ def changed(
     tokens: possible replacements. reaches: limits in bytes from the beginning; each damaged place
     starts before one of them, chosen at random.
     """
-    for _ in range(chance.randint(1, MOST)):
+    for _ in range(chance.randint(1, MOST_PLACES)):
         place = chance.randrange(min(len(content), chance.choice(reaches)) + 1)
         end = min(len(content), place + chance.choice((0, 1, 1, 3, 20)))
         kind = chance.random()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings.names import ANGLES, ARKIT, NONSENSE, VISEMES
+from risorius.app.recordings.names import ANGLES, ARKIT, LARGEST_VALUE, VISEMES
 from risorius.app.recordings.reading import is_recording, read_take
 from tests.app.recording_files import live_link, openface, pyfeat, table
 
@@ -51,7 +51,7 @@ def check(take):
         assert np.isfinite(values).all(), name
         if name not in ANGLES:
             assert name in (*ARKIT, *VISEMES) or name.startswith("AU"), name
-            assert np.abs(values).max() <= NONSENSE, name  # trackers overshoot a little
+            assert np.abs(values).max() <= LARGEST_VALUE, name  # trackers overshoot a little
     assert all(note.endswith(".") for note in take.notes)
 
 

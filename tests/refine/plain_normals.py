@@ -22,7 +22,7 @@ from tests.refine.plain_twin import (
     unit,
 )
 
-NOTHING: Vector = (0.0, 0.0, 0.0)
+ZERO: Vector = (0.0, 0.0, 0.0)
 
 
 def area(*corners: Vector) -> Vector:
@@ -61,8 +61,8 @@ class RefinedNormals(Rules):
 
     def _surface(self, whole: Placed) -> tuple[list[Vector], dict[EdgeName, Vector]]:
         """Unit normals of vertices and of the middles of all edges."""
-        of_vertices = [NOTHING] * len(whole.vertices)
-        of_middles: dict[EdgeName, Vector] = defaultdict(lambda: NOTHING)
+        of_vertices = [ZERO] * len(whole.vertices)
+        of_middles: dict[EdgeName, Vector] = defaultdict(lambda: ZERO)
         sheets: Counter[EdgeName] = Counter()
         for source, face in enumerate(self.faces):
             if not is_proper(face):

@@ -17,7 +17,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius.assets.errors import AssetError
-from risorius.assets.fitting.guess import FIRST, centred, guess, placing
+from risorius.assets.fitting.guess import FIRST_LANDMARKS, centred, guess, placing
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
 from risorius.assets.fitting.mesh_validation import check_pieces
 from risorius.assets.fitting.warp import Similarity
@@ -102,7 +102,7 @@ class Marks:
     @property
     def next_landmark(self) -> int | None:
         """The landmark that must be marked next; None if the rest can be guessed."""
-        return next((number for number in FIRST if number not in self.places), None)
+        return next((number for number in FIRST_LANDMARKS if number not in self.places), None)
 
 
 class Marking:
@@ -120,7 +120,7 @@ class Marking:
             check_pieces(mesh.faces, len(mesh.vertices))
         self.file: Path | None = None  # file of the marks
         self.marks = self._saved = Marks({})
-        self.current = FIRST[0]
+        self.current = FIRST_LANDMARKS[0]
         self.seen_mesh = Drawable("face", mesh.faces, mesh.vertices)  # in the picture's space
         radius = 140.0  # [mm] of the displayed mesh, until marks show the head's size
         self._place(centred(mesh.vertices, radius))

@@ -9,7 +9,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import assets
-from risorius.assets.fitting.guess import FIRST
+from risorius.assets.fitting.guess import FIRST_LANDMARKS
 from risorius.sim.landmarks import MIRRORED
 
 from ..interface.commands import Command, MenuBar, command_button
@@ -84,8 +84,8 @@ class MarkingPanel:
         is_complete = self._marking.marks.is_complete
         number = marking.current
         muted(self._gui, marking.path.name)
-        if number in FIRST and not is_complete:
-            step = f"First points: {FIRST.index(number) + 1} of {len(FIRST)}"
+        if number in FIRST_LANDMARKS and not is_complete:
+            step = f"First points: {FIRST_LANDMARKS.index(number) + 1} of {len(FIRST_LANDMARKS)}"
             name = POINT_NAMES[number]
         else:
             step = GROUP_OF[number].title.capitalize()

@@ -16,7 +16,7 @@ from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...control_names import readable
 from ...errors import UserError
 from ...refining.presets import PRESETS, STATIC, STATIC_LABEL, THRESHOLDS, words_of_presets
-from ...refining.refiners import DETAIL, OF, can_detail, options_of
+from ...refining.refiners import DETAIL, OPTION_MARK, can_detail, options_of
 from ...text import counted
 from ..context import ApplicationContext
 from ..interface.widgets import button, heading, muted
@@ -155,7 +155,7 @@ class MechanismPanel:
         of_look = PRESETS[self._display.look][scene.name].options_for(refiner)
         default = of_look.get(name, option.default)
         value = stored.get(name, default)
-        label = name.replace("_", " ").replace(OF, " ")
+        label = name.replace("_", " ").replace(OPTION_MARK, " ")
         if option.help:
             self._rows.hints.setdefault(label, option.help)
         put = partial(stored.__setitem__, name)

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from risorius.assets.identities import NAMED
 
-from ...scenes import BUILT_IN, COARSE, OWN, head_in_words
+from ...scenes import BUILT_IN, COARSE, OWN_HEAD, head_in_words
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.gui import em, ink_of
@@ -31,7 +31,7 @@ class PeopleList:
         present = int(called) if called.isdecimal() else called
         people: list[int | str] = [BUILT_IN, COARSE, *NAMED]
         people += range(20)  # and persons without names
-        if present not in (*people, OWN):
+        if present not in (*people, OWN_HEAD):
             people.append(present)
         self._portraits.begin(people)
         self._rows.begin("Person")
@@ -94,7 +94,7 @@ class PeopleList:
 
 def in_words(who: int | str) -> str:
     """Describe a person in the list, such as "Person 7, woman, about 60"."""
-    if who == OWN:
+    if who == OWN_HEAD:
         return "Own head"
     if who == BUILT_IN:
         return "Built-in"

@@ -19,7 +19,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.rays import PARALLEL, crossings
 
-from ...control_names import OPPOSITE, TURNED, plain_name, split_side, twin_of
+from ...control_names import OPPOSITES, SIGNED_CONTROLS, plain_name, split_side, twin_of
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
@@ -203,10 +203,10 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
         is_whole = f"{name}_left" in lowest
         if is_whole or name.startswith(unpulled_prefixes):
             continue
-        if linked and is_aside and (name in TURNED or split_side(name)[0] in OPPOSITE):
+        if linked and is_aside and (name in SIGNED_CONTROLS or split_side(name)[0] in OPPOSITES):
             continue
         is_pair = linked and twin != name and values[name] == values[twin]
-        if not is_pair or split_side(name)[0] in OPPOSITE:
+        if not is_pair or split_side(name)[0] in OPPOSITES:
             found.append((name,))
         elif name < twin:
             found.append((name, twin))

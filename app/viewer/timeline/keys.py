@@ -115,7 +115,7 @@ class KeySelection:
                 "no control was moved since the last key; [Key whole pose] sets keys for all"
             )
         time = self._session.set_key(names)
-        there = keyframes.all_keys(self._session.script).nearest(time, keyframes.SAME).times
+        there = keyframes.all_keys(self._session.script).nearest(time, keyframes.TOLERANCE).times
         tracks = {name: times for name, times in there.items() if name in names}
         is_posed = len(tracks) < len(names)
         poses = {POSES: there[POSES]} if is_posed and POSES in there else {}
@@ -127,7 +127,7 @@ class KeySelection:
         """Set keys for all controls, with the current face, at the current time."""
         time = self._session.set_key()
         script = self._session.script
-        there = keyframes.all_keys(script).nearest(time, keyframes.SAME)
+        there = keyframes.all_keys(script).nearest(time, keyframes.TOLERANCE)
         self.keys = KeySet({POSES: there.times[POSES]}) if POSES in there.times else there
         return f"Whole pose keyed at {time:.2f} s"
 

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-OWN = {"position", "custom_normal"}  # written by the copy itself
+WRITTEN_ATTRIBUTES = {"position", "custom_normal"}  # written by the copy itself
 LOOKS = {
     "SMOOTH": {"scheme": "cubic", "criterion": "displacement+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
@@ -44,7 +44,7 @@ def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
         each.name: numbers(each.data, FIELDS.get(each.data_type, "vector"), width, np.float32)
         for each in mesh.attributes
         if each.domain == "POINT" and (width := WIDTHS.get(each.data_type))
-        if each.name not in OWN and not each.name.startswith(".")
+        if each.name not in WRITTEN_ATTRIBUTES and not each.name.startswith(".")
     }
 
 
