@@ -254,7 +254,10 @@ def bench_seen(model: Path) -> None:
 @bench.command("landmarks")
 @click.argument("folder", type=FOLDER)
 @click.option(
-    "--detector", type=click.Choice(("dlib", "mediapipe")), required=True, help="The detector."
+    "--detector",
+    type=click.Choice(("dlib", "mediapipe")),
+    required=True,
+    help="The detector of landmarks.",
 )
 @click.option(
     "--model",
@@ -284,7 +287,7 @@ def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
     type=click.IntRange(0, 100_000),
     default=500,
     show_default=True,
-    help="Number of random mixtures of expressions, too.",
+    help="Number of random mixtures of expressions that are also checked.",
 )
 def bench_gaps(mixtures: int) -> None:
     """Look for gaps in shut lips and lids, torn skin and failed contacts."""

@@ -262,7 +262,7 @@ def _carries(
     line_of_row = np.repeat(np.arange(line_count), np.diff(stack.rows))
     lies[line_of_row, stack.point] = True
     parts: list[Part] = []
-    least_carried = 0.05  # the same for attachments by which one muscle carries the skin of another
+    least_carried = 0.05  # least weight of skin that one muscle carries for another
     nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:
         lines = placed[n].lines

@@ -122,7 +122,7 @@ class Pull:
             least_of_best = 0.7
             best = fraction.max(initial=0.0)
             is_meant = fraction > min(least_of_largest, least_of_best * best)
-            # Nor is it meant for skin at the mouse if it moves skin at the finger's rim more.
+            # A control that moves the finger's rim more than the skin at the mouse is not meant.
             least_of_finger = 0.7
             lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
             is_at_mouse = is_meant & (centre > least_of_finger * lengths)

@@ -101,8 +101,8 @@ def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
     sample_count: number of vertices along each strand.
     """
     inside = from_within(hair, hair.faces)
-    # Locks that face away from the eye are not drawn, so these are lit like the outer side. Hence
-    # they are darker: no lamp reaches the inner side of tips.
+    # Locks that face away from the eye are not drawn, so these are lit like the outer side. They
+    # are darker, because no lamp reaches the inner side of tips.
     lit = replace(inside, normals=-inside.normals, colours=0.65 * inside.colours)
     is_last = (hair.faces % sample_count >= sample_count - 2).all(axis=1)
     inner = replace(lit, name=lit.name + "_tips", faces=lit.faces[is_last])

@@ -149,7 +149,7 @@ NAN[4, 1] = np.nan
 def test_bad_binding(name, changes, text):
     """Arrays that do not fit together are refused.
 
-    The error has the fault, its place, and allowed values.
+    The error names the fault, its place, and the allowed values.
     """
     arguments = {"faces": FINE.faces, "rest_positions": FINE.vertices}
     arguments |= changes
