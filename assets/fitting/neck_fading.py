@@ -11,9 +11,11 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
 
     The first column is the opacity: up to 0 along the neck's edge, and 1 or more from 25 mm (or
     less) above it. The second column is the smaller of two distances [mm]: in front of the neck,
-    and below the brows. Where it is negative, the inner side of the skin is hidden, because it
-    could only be seen through the neck, not through the mouth. Both columns belong to vertices, so
-    a chin that moves down beside a short neck stays visible.
+    and below the brows. Above the chin, the first distance may also be measured from the hind end
+    of the cheeks, which may lie behind the front of the neck. Where the column is negative, the
+    inner side of the skin is hidden, because it could only be seen through the neck, not through
+    the mouth. Both columns belong to vertices, so a chin that moves down beside a short neck stays
+    visible.
 
     vertices: at rest [mm], (V, 3). landmarks: vertex indices, (68,). Returns None if the mesh has
     no edge at the neck.
@@ -39,7 +41,12 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     if height <= 0.0:
         return None
     opacity = (vertices @ up - bottom) / height
-    ahead = vertices[:, 2] - vertices[opacity < 1.0, 2].max()
+    mouth_corners = [48, 54]
+    cheek_depth = 65.0  # [mm] behind the corners, where cheeks are seen past the mouth's walls
+    cheeks = vertices[landmarks[mouth_corners], 2].min() - cheek_depth
+    neck_front = vertices[opacity < 1.0, 2].max()
+    is_above_chin = vertices[:, 1] > chin[1]
+    ahead = vertices[:, 2] - np.where(is_above_chin, min(neck_front, cheeks), neck_front)
     brow_landmarks = slice(17, 27)
     below = vertices[landmarks[brow_landmarks], 1].max() - vertices[:, 1]
     return np.stack([opacity, np.minimum(ahead, below)], axis=1).astype(np.float32)

@@ -111,6 +111,12 @@ def test_the_inner_side_of_the_neck_does_not_show(fitted):
     highest = fitted.vertices[:, 1] > fitted.vertices[fitted.landmarks[19], 1] + 10.0
     assert inner[highest].max() < 0.0
     assert inner[fitted.landmarks[36:]].min() > 5.0
+    # A neck far in front, as of children, does not hide cheeks that show through the mouth.
+    vertices = fitted.vertices.copy()
+    vertices[share < 1.0, 2] += 50.0
+    corner = vertices[fitted.landmarks[48]]
+    is_cheek = (np.abs(vertices[:, 1] - corner[1]) < 10.0) & (vertices[:, 2] > corner[2] - 60.0)
+    assert replace(fitted, vertices=vertices).fade()[is_cheek, 1].min() > 0.0
 
 
 def test_triangles_that_fade_are_drawn_last(fitted, other):
