@@ -90,3 +90,10 @@ def test_slit_measure_sees_an_open_mouth(simulation, head, slits):
     settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]
     assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)
+
+
+def test_an_o_is_round(simulation, head):
+    """In `viseme_oh` the opening of the mouth is 0.6 times as high as it is wide; 0.57 once."""
+    x = head.vertices + settled_displacement(simulation, {"viseme_oh": 1.0})
+    wide, high, _ = np.ptp(x[head.landmarks[60:68]], axis=0)
+    assert high > 0.6 * wide
