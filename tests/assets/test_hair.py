@@ -12,6 +12,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
+from risorius.assets.data_files import read_arrays
 from risorius.assets.identities import (
     HAIR,
     Features,
@@ -84,6 +85,13 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
     assert longer.vertices[:, 1].max() > usual.vertices[:, 1].max() + 0.5
     dense = [part.striation[:, 5] > 0.3 for part in (usual, receded)]
     assert receded.vertices[dense[1], 2].max() < usual.vertices[dense[0], 2].max() - 5.0
+
+
+def test_sideburns_reach_the_ears(head):
+    """Hair stands as densely beside the root of an ear as in the sideburn; 0.35 of 0.6 once."""
+    scalp = read_arrays(head.beside("_tints.npz"))["scalp"]
+    for side in (scalp, scalp[:, ::-1]):
+        assert side[152:159, 259].min() > 50
 
 
 def test_bobs_are_cut_off_without_a_veil():
