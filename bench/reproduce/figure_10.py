@@ -22,6 +22,8 @@ from risorius.app.capture.captions import LANCZOS
 from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
+from risorius.app.scenes.bent_part import BentPart
+from risorius.assets import Part
 from risorius.geometry.arrays import Flags, Unsigned8
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, Shot, image_table, parts_without_hair
@@ -158,10 +160,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             bare = parts_without_hair(scene)
             parts = tuple(part for part in bare if part.name not in parts_at_lids)
             bones = simulation.bones.transforms()
-            green = tuple(
-                replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
-                for part in parts
-            )
+            green = tuple(_in_green(part) for part in parts)
             cells = []
             for title, refiner, count in refiners:
                 skin = now[:count]  # the first vertices of the dense mesh are the coarse one's
@@ -173,6 +172,13 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 triangles = canvas.mesh_of(refiner).triangle_count
                 cells.append(Cell(triangles, _smaller(smooth), title, of_kind))
             yield viewpoint.expression, cells
+
+
+def _in_green(part: Part | BentPart) -> Part:
+    """Return a part in its current shape, green and without highlights."""
+    rest = part.rest if isinstance(part, BentPart) else part
+    colours = np.tile(GREEN, (len(rest.colours), 1))
+    return replace(rest, vertices=part.vertices, normals=part.normals, colours=colours, shine=0.0)
 
 
 def _smaller(image: Image) -> Image:
