@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.recovery import INTERVAL, Recovery
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings, load_settings, save_settings
+from risorius.app.viewer.window.splash_screen import SplashScreen
 
 from .driving import NEEDS_A_SCREEN, SIZE, run, settle, wait_for
 
@@ -360,3 +362,17 @@ def test_pictures_of_persons_are_drawn_once(tmp_path, monkeypatch):
     assert portraits.kept_portrait("coarse") is None
     monkeypatch.setattr(portraits, "_program", lambda: "newer")
     assert portraits.kept_portrait("coarse") is None
+
+
+@pytest.mark.parametrize(
+    ("remembered", "zoom"), [({}, 4 / 3), ({"size": [1280, 800]}, 1.2 * 4 / 3)]
+)
+def test_a_large_window_has_large_words(path, monkeypatch, remembered, zoom):
+    """A window of a given size has words that fit its height; the user's own factor stays."""
+    surface = SimpleNamespace(frame_size=(2560, 1440), pixel_scale=1.0, show=lambda image: None)
+    monkeypatch.setattr("risorius.render.open_window", lambda *_, **__: surface)
+    if remembered:
+        path.write_text(json.dumps({**remembered, "zoom": 1.2}))
+    splash = SplashScreen((2560, 1440), path)
+    SplashScreen.LOG.removeHandler(splash)
+    assert splash.settings.zoom == pytest.approx(zoom)

@@ -66,7 +66,7 @@ class FaceMode:
             *menus.edit_menu(session),
             *menus.time_menu(session, scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
-            *menus.view_menu(settings, self.view, session),
+            *menus.view_menu(settings, self.view, session, context.surface),
             *menus.expression_keys(session),
             *menus.live_menu(context.live, session),
             *menus.help_menu(context.manual, lambda: self.commands),

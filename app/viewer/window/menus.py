@@ -12,7 +12,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
-from risorius import __version__
+from risorius import __version__, render
 
 from ...control_names import readable
 from ...performances import examples
@@ -33,6 +33,7 @@ from ..session.session import Session
 from ..settings import Settings, switch
 from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
+from .splash_screen import zoom_for
 
 Menu = tuple[Command, ...]
 CITATION = """\
@@ -193,7 +194,9 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     )
 
 
-def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
+def view_menu(
+    settings: Settings, view: SceneView, session: Session, surface: render.WindowSurface
+) -> Menu:
     """Return commands for the scene's display, and the panels around it."""
 
     def has_face() -> bool:
@@ -209,6 +212,10 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
         display = settings.display
         display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
+
+    def use_default_size() -> None:
+        """Give words the size that fits the window's height."""
+        settings.zoom = zoom_for(surface, surface.frame_size[1])
 
     is_opened = lambda: "muscles" in settings.display.overlays  # noqa: E731
     muscles = partial(command, is_on=is_opened, can_run=has_face)
@@ -236,7 +243,7 @@ def view_menu(settings: Settings, view: SceneView, session: Session) -> Menu:
         setting("Dark theme", "F2", "theme", "dark", "light", begins_section=True),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
-        command("Default size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
+        command("Default size", "Ctrl+0", use_default_size),
     )
 
 

@@ -38,13 +38,18 @@ class SplashScreen(logging.Handler):
         self.complaint = ""
         if path is not None:
             self.settings, self.complaint = load_settings(path)
-        known = size or self.settings.size
+        remembered = self.settings.size
+        known = size or remembered
         self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
         most = 2560, 1440  # [units of a screen of ordinary density]
         self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
-        if known is None:
-            self.settings.zoom = zoom_for(self.surface)
+        height = self.surface.frame_size[1]
+        if remembered is None:
+            self.settings.zoom = zoom_for(self.surface, height)
+        elif size is not None:  # the remembered size of words belongs to a window of another size
+            former = zoom_for(self.surface, height * remembered[1] / size[1])
+            self.settings.enlarge(zoom_for(self.surface, height) / former)
         self.LOG.addHandler(self)
         self._show()
 
@@ -80,11 +85,13 @@ class SplashScreen(logging.Handler):
         self.surface.show(picture(size, letter, THEMES[self.settings.theme], text))
 
 
-def zoom_for(surface: render.WindowSurface) -> float:
-    """Return the factor on the size of words that makes them readable on a large screen."""
-    height = surface.frame_size[1] / surface.pixel_scale
+def zoom_for(surface: render.WindowSurface, height: float) -> float:
+    """Return the factor on the size of words that makes them readable in a large window.
+
+    height: height of the window [pixels].
+    """
     usual_height = 1080.0  # [units of a screen of ordinary density]
-    return min(max(height / usual_height, 1.0), 1.5)
+    return min(max(height / surface.pixel_scale / usual_height, 1.0), 1.5)
 
 
 def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> render.Image:
