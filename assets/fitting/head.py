@@ -62,7 +62,7 @@ from .mouth_walls import FittedSkin, opened_jaws
 from .neck_fading import fading_last, neck_fade
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .own_lip import nearest_own
-from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
+from .painting import Layout, drawn_over, maps_in, own_picture, own_skin, spread_uv
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
@@ -366,7 +366,7 @@ def _painted(
     if own is not None:
         height, width = own[0].shape[:2]
         return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
-    picture, light = plain_skin(known)
+    picture, light = own_skin(known, skin)
     has_colours = mesh.colours is not None
     if mesh.has_colour is not None:
         has_colours = bool(mesh.has_colour[skin.file_vertices].all())

@@ -26,10 +26,11 @@ from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
 from ...geometry.sides import edges_of
 from ...geometry.texels import Texels, rates
-from ..data_files import Image, read_arrays
+from ..data_files import Image, read_arrays, read_image
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST_SIDE, Texture
+from .mesh_validation import SkinPiece
 
 SIZE = 1024  # [texels] width and height of maps that are drawn again
 
@@ -128,6 +129,39 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
     picture[drawn["is_drawn"]] = drawn["colours"]
     light[drawn["is_lit"]] = drawn["light"]
     return picture, light
+
+
+def own_skin(known: Head, skin: SkinPiece) -> tuple[Image, Image]:
+    """Return the textures of `plain_skin` for another head, whose vertices are in the face space.
+
+    Triangles of a coarse lid reach across its edge, and would show a part of the dark line of
+    lashes as a patch that looks like a hole. So coarse lids have no line.
+    """
+    picture, light = plain_skin(known)
+    links = edges_of(skin.faces)
+    at_lids = links[np.isin(links, skin.landmarks[[37, 38, 43, 44]]).any(axis=1)]
+    lengths = np.linalg.norm(np.diff(skin.vertices[at_lids], axis=1)[:, 0], axis=1)
+    coarse_lid_edge = 3.5  # [mm], mean of the edges at the landmarks of the upper lids
+    if lengths.mean() > coarse_lid_edge:
+        picture = _without_lash_roots(known, picture)
+    return picture, light
+
+
+def _without_lash_roots(known: Head, picture: Image) -> Image:
+    """Replace the dark lines of lashes' roots in the built-in texture by the skin around."""
+    roots = read_image(known.beside("_lids.png"), mode="L") / 255.0
+    size = 5.0  # [texels] of the Gaussian that fills the lines
+    low, high = np.flatnonzero(roots.any(axis=1))[[0, -1]] + [-30, 30]
+    share = np.minimum(5.0 * roots[low:high, :, None], 1.0)
+    near = picture[low:high].astype(np.float64)
+    sums, weight = (
+        scipy.ndimage.gaussian_filter(each, (size, size, 0.0))
+        for each in (near * (share == 0.0), (share == 0.0).astype(np.float64))
+    )
+    filled = near + share * (sums / np.maximum(weight, 1e-6) - near)
+    drawn = picture.copy()
+    drawn[low:high] = filled.round().clip(0, 255).astype(np.uint8)
+    return drawn
 
 
 @dataclass(frozen=True)
