@@ -41,10 +41,8 @@ def changes_of(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats
     """Added densities of melanin and blood, and light of hair, (3,) each."""
     amounts = [complexion.melanin for complexion in COMPLEXIONS]
     usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
-    hair = [
-        np.interp(melanin, amounts, channel)
-        for channel in to_linear(np.array([complexion.hair for complexion in COMPLEXIONS])).T
-    ]
+    hairs = to_linear(np.array([complexion.hair for complexion in COMPLEXIONS]))
+    hair = [np.interp(melanin, amounts, channel) for channel in hairs.T]
     more = max(melanin - amounts[-1], 0.0)
     dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
     density = (melanin - more - SHIPPED.melanin) * MELANIN + more * dark_melanin

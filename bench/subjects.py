@@ -63,7 +63,8 @@ class Scans:
         other_arrays = ("vertices", "triangles", "landmarks68")
         arrays = read_arrays(directory / DENSE_FILE, other_arrays)
         vertices, triangles, landmarks = (arrays.pop(name) for name in other_arrays)
-        is_mesh = vertices.shape[1:] == triangles.shape[1:] == (3,) and landmarks.shape == (68,)
+        has_triples = vertices.shape[1:] == triangles.shape[1:] == (3,)
+        is_mesh = has_triples and landmarks.shape == (68,)
         if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
             raise UserError(f"{directory / DENSE_FILE}: holds no mesh with 68 of its vertices")
         fields: dict[str, Points] = {}

@@ -190,8 +190,9 @@ class _Refined:
         values = self.values
         if values is not None:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
-            edge_points = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
-            corner_rows = np.concatenate([_children(rows[split], edge_points), rows[whole]])[order]
+            edges = mesh.triangle_attribute_edges[split] >> 1
+            children = _children(rows[split], len(values) + edges.astype(np.int64))
+            corner_rows = np.concatenate([children, rows[whole]])[order]
             values = _with_edge_points(values, mesh)
 
         corners = self.barycentric[split]

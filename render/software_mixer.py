@@ -96,7 +96,8 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
 
 def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
     """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
-    positions = _moved(placed.part.vertices, placed.part.transform.T @ view.world_to_view)[:, :3]
+    model_view = placed.part.transform.T @ view.world_to_view
+    positions = _moved(placed.part.vertices, model_view)[:, :3]
     clip = _moved(positions, view.projection)
     if cut is not None:
         plane = np.array(in_view(cut, view))
@@ -114,7 +115,8 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     striation = placed.part.part.striation
     assert striation is not None  # all short hair has it
     layers = placed.buffers.layer_count(view)
-    place = (np.floor(_MEAN_PLACE * layers - _LOWEST_PLACE + 0.5) + _LOWEST_PLACE) / layers
+    number = np.floor(_MEAN_PLACE * layers - _LOWEST_PLACE + 0.5)
+    place = (number + _LOWEST_PLACE) / layers
     model_view = placed.part.transform.T @ view.world_to_view
     outline = placed.part.vertices + (place - _MEAN_PLACE) * striation[:, 2:5]
     positions = _moved(outline, model_view)[:, :3]

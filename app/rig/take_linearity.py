@@ -100,7 +100,8 @@ def worth_correcting_on(
     along = np.zeros(products.shape)  # scalar products of each frame's error and each corrective
     for frame, displacement in enumerate(take.displacements):
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
-        along[frame] = (area_weights * (displacement - sums.sum(at_once))).ravel() @ columns
+        error = displacement - sums.sum(at_once)
+        along[frame] = (area_weights * error).ravel() @ columns
     return _greediest(tried, products, along, columns.T @ columns, count)
 
 

@@ -33,7 +33,8 @@ class FaceNow(NamedTuple):
     def skin_on(self, bone: str, numbers: Integers | slice = slice(None)) -> Floats64:
         """Return vertices of the skin, by default all, in the space of a bone [mm]."""
         matrix = self.bones[bone]
-        there: Floats64 = (self.skin[numbers] - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
+        turned_back = np.linalg.inv(matrix[:3, :3])
+        there: Floats64 = (self.skin[numbers] - matrix[:3, 3]) @ turned_back.T
         return there
 
 

@@ -246,9 +246,8 @@ class Script:
         before, after, fraction = _between(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
-        posed: Floats64 = start + (end - start) * easing_named(self.poses[after].easing).progress(
-            fraction
-        )
+        easing = easing_named(self.poses[after].easing)
+        posed: Floats64 = start + (end - start) * easing.progress(fraction)
         return posed
 
     def posed_channel(self, name: str) -> Channel:

@@ -96,7 +96,8 @@ class KeySet(Set[KeyId]):
         return self._combined(other, np.setdiff1d)
 
     def _combined(self, other: Set[Any], combine: Callable[[Times, Times], Times]) -> KeySet:
-        other_times = (other if isinstance(other, KeySet) else KeySet.from_keys(*other)).times
+        second = other if isinstance(other, KeySet) else KeySet.from_keys(*other)
+        other_times = second.times
         return KeySet(
             {
                 name: combine(self.times.get(name, NO_TIMES), other_times.get(name, NO_TIMES))

@@ -95,7 +95,8 @@ class ThinPlateSpline:
         count, width = rows.shape
         system = np.zeros((width, width))
         system[:count] = rows
-        system[np.arange(count), np.arange(count)] += np.broadcast_to(give, len(source))[first]
+        diagonal = np.arange(count)
+        system[diagonal, diagonal] += np.broadcast_to(give, len(source))[first]
         system[count:, :count] = rows[:, count:].T
         wanted = np.zeros((width, 3))
         wanted[:count] = target[first]

@@ -266,7 +266,8 @@ def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
     tree = scipy.spatial.cKDTree(places[neck])
     distances, near = tree.query(np.column_stack([turn, points[:, 1]]), k=4)
     weights = 1.0 / (distances + 1.0)
-    skins = (weights * np.hypot(apart[neck, 0], apart[neck, 2])[near]).sum(1) / weights.sum(1)
+    radii = np.hypot(apart[neck, 0], apart[neck, 2])
+    skins = (weights * radii[near]).sum(1) / weights.sum(1)
     wanted = np.maximum(reach, skins + clearance)
     wanted = scipy.ndimage.gaussian_filter1d(wanted, 2.0, mode="wrap")
     scale = (wanted / reach)[:, None]

@@ -50,7 +50,8 @@ def _raised(size: int, side: float) -> tuple[Relief, Relief]:
     """
     head = load("head")
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
-    is_near = (side * x >= 0.0).all(axis=1) & ((y < -60.0) & (z < 80.0) & (z > -60.0)).any(axis=1)
+    is_on_neck = (y < -60.0) & (z < 80.0) & (z > -60.0)
+    is_near = (side * x >= 0.0).all(axis=1) & is_on_neck.any(axis=1)
     corners = head.uv[head.face_uv].astype(np.float64)
     corners[~is_near] = -1.0  # outside the map
     texels = Texels.within(corners, (size, size))

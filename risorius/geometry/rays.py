@@ -50,9 +50,10 @@ def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
             continue
         for k in range(3):
             after = (k + 1) % 3
-            if _segment_cuts(corners[one, k], corners[one, after], corners[other]) or _segment_cuts(
-                corners[other, k], corners[other, after], corners[one]
-            ):
+            if _segment_cuts(corners[one, k], corners[one, after], corners[other]):
+                cuts[number] = True
+                break
+            if _segment_cuts(corners[other, k], corners[other, after], corners[one]):
                 cuts[number] = True
                 break
     return cuts

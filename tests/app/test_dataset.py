@@ -169,7 +169,8 @@ def test_a_set_begins_anywhere(made, tmp_path):
     assert run(folder, "--first", 2, count=2).exit_code == 0
     for end in ENDS:
         assert not (folder / f"000001{end}").exists()
-        assert (folder / f"000003{end}").read_bytes() == (made / f"000003{end}").read_bytes()
+        name = f"000003{end}"
+        assert (folder / name).read_bytes() == (made / name).read_bytes()
     assert f"--count 2 --first 2 --seed {SEED}" in (folder / "README.md").read_text("utf-8")
     message = refusal(run(folder, "--resume", "--first", 3, count=2))
     assert "has sample 2 already; give --first 2 and --count 3 or more" in message

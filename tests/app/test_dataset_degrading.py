@@ -68,7 +68,8 @@ def test_only_pictures_and_one_label_differ(tmp_path):
     clean, other = (tmp_path / name for name in ("clean", "degraded"))
     pictures = [np.asarray(PIL.Image.open(each / "000000.png")) for each in (clean, other)]
     assert not np.array_equal(*pictures)
-    assert (clean / "000000_seg.png").read_bytes() == (other / "000000_seg.png").read_bytes()
+    name = "000000_seg.png"
+    assert (clean / name).read_bytes() == (other / name).read_bytes()
     labels = json.loads((other / "000000.json").read_text())
     added = labels.pop("degradation")
     assert added["noise"] == 4.0

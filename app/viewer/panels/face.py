@@ -152,7 +152,8 @@ class ControlRows:
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - spacing.y)
         else:
             imgui.same_line(left + label_room)
-        width = (imgui.get_content_region_avail().x + spacing.x) / len(names) - spacing.x
+        room = imgui.get_content_region_avail().x
+        width = (room + spacing.x) / len(names) - spacing.x
         for index, name in enumerate(names):
             if index:
                 imgui.same_line()
