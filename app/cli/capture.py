@@ -66,7 +66,8 @@ class Filming:
         "--alive/--not-alive",
         default=None,
         help="Add idle life: eyes blink and look at the camera, and the head nods with speech, "
-        "unless the script moves them. By default recordings without motion of the head get it.",
+        "unless the script moves them. By default scripts with alive = true get it, and recordings "
+        "without motion of the head.",
     )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
@@ -112,9 +113,17 @@ class Filming:
         return replace(style, background=behind)
 
     def options(
-        self, script: Script, drawing: Drawing, *, is_recorded: bool = False
+        self,
+        script: Script,
+        drawing: Drawing,
+        *,
+        is_recorded: bool = False,
+        is_still: bool = False,
     ) -> CaptureOptions:
-        """Return the options for a script's frames; raise UserError for impossible options."""
+        """Return the options for a script's frames; raise UserError for impossible options.
+
+        is_still: whether only one picture is made, which could show a blink.
+        """
         from ..capture import CaptureOptions
         from ..refining.refiners import parse_comparison
 
@@ -122,6 +131,7 @@ class Filming:
         refinement.check(script.scene)
         camera, is_turntable = self.view()
         has_head = any(name.startswith("head_") for name in script.names)
+        lives = not is_still and (script.alive or (is_recorded and not has_head))
         return CaptureOptions(
             size=self.size,
             frames_per_second=self.fps,
@@ -133,7 +143,7 @@ class Filming:
             style=self._style(drawing),
             anatomy=drawing.anatomy_view(),
             head=drawing.fitted_head(),
-            is_alive=is_recorded and not has_head if self.alive is None else self.alive,
+            is_alive=lives if self.alive is None else self.alive,
             passes=() if self.passes is None else tuple(self.passes.split(",")),
         )
 
@@ -181,8 +191,8 @@ def capture(
         )
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"
-    is_still = output is not None and output.suffix.lower() == ".png"  # could show a blink
-    options = filming.options(performance, drawing, is_recorded=is_recording and not is_still)
+    is_still = output is not None and output.suffix.lower() == ".png"
+    options = filming.options(performance, drawing, is_recorded=is_recording, is_still=is_still)
     most = film_of(
         performance,
         options,

@@ -61,7 +61,7 @@ def play(
         """Set the values of the script at a time [s], and of idle life for other controls."""
         values = script.values(time, scene.limits)
         if idle is not None and viewer is not None:
-            opening = _opening_of_jaw(scene, values)
+            opening = opening_of_jaw(scene, values)
             living = idle.amounts(moved, viewer, time, opening=opening)
             values = scene.limits.pose(living, over=values)
         scene.set_controls(values)
@@ -78,7 +78,7 @@ def play(
         yield index / frames_per_second
 
 
-def _opening_of_jaw(scene: Scene, values: ControlValues) -> float:
+def opening_of_jaw(scene: Scene, values: ControlValues) -> float:
     """Return how far a pose opens the jaw, 0 to 1; 0 in a scene without a face."""
     if scene.face is None:
         return 0.0

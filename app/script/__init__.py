@@ -204,6 +204,7 @@ class Script:
     scene: str = "face"
     camera: str | None = None
     sound: Path | None = None  # the absolute path of its sound file
+    alive: bool = False  # whether idle life moves controls that the script does not name
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the comments at the beginning of the file

@@ -25,7 +25,7 @@ import click
 import numpy as np
 import numpy.typing as npt
 
-from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
+from risorius.schema import Flag, MadeFrom, Record, parsed_toml, quoted, read
 
 from ..errors import UserError
 from ..files import read_text, save_text
@@ -108,6 +108,7 @@ class _File(Record):
     scene: str = "face"
     camera: str | None = None
     sound: str | None = None
+    alive: Flag = False
     duration: Moment | None = None
     pose: Annotated[tuple[Pose, ...], MadeFrom(list[Pose], _poses)] = ()
     tracks: dict[str, Annotated[Channel, MadeFrom(Any, _channel)]] = field(default_factory=dict)
@@ -155,6 +156,7 @@ def parse_script(text: str, *, source: str) -> Script:
         scene=file.scene,
         camera=file.camera,
         sound=sound or None,
+        alive=file.alive,
         poses=file.pose,
         tracks=file.tracks,
         preface=preface_of(text),
@@ -192,6 +194,8 @@ def script_text(script: Script, folder: Path | None = None) -> str:
     head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
         head.append(f"camera = {_quoted(script.camera)}")
+    if script.alive:
+        head.append("alive = true")
     if script.sound is not None:
         sound = _as_seen_from(folder, script.sound)
         if as_text(sound) != sound:

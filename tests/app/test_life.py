@@ -186,7 +186,7 @@ def test_a_speaking_head_nods(scene):
 
 @pytest.mark.slow
 def test_a_recording_without_head_motion_has_life(tmp_path):
-    """A film of a recording without head motion blinks and nods by default.
+    """A film of a recording without head motion, or of a script that is alive, blinks and nods.
 
     With head motion, or with --not-alive, it does not.
     """
@@ -207,6 +207,12 @@ def test_a_recording_without_head_motion_has_life(tmp_path):
             succeeded("capture", take, "-o", folder, "--size", "64x64", "--fps", "10", *more)
         last = [sorted(folder.glob("*.png"))[-1].read_bytes() for folder in folders]
         assert (last[0] != last[1]) == lives, name
+    script = tmp_path / "script.toml"
+    script.write_text("alive = true\nduration = 1\ntracks.jaw_open = [{ time = 0, value = 0.4 }]\n")
+    folder = tmp_path / "script"
+    succeeded("capture", script, "-o", folder, "--size", "64x64", "--fps", "10")
+    pictures = {picture.read_bytes() for picture in folder.glob("*.png")}
+    assert len(pictures) > 1
 
 
 @pytest.mark.slow

@@ -1,10 +1,12 @@
 """The face moves without input in the window, until a user or a script controls it."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from risorius.app.script import Channel
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture.stage import COARSEST_IDLE_LEVEL, LEVELS
 from risorius.app.viewer.session.physics import SLEEP_DELAY
@@ -49,6 +51,21 @@ def test_a_key_switches_it_off_and_on(viewer):
     assert viewer.settings.is_alive
     assert not viewer.schedule.is_idle
     assert until(viewer, lambda: moved(viewer) > 0.1)
+
+
+def test_only_a_script_that_is_alive_has_life_while_it_plays(viewer):
+    """A script with `alive = true` has idle life in controls that it never names."""
+    session = viewer.session
+    track = {"jaw_open": Channel([0.0, 9.0], [0.3, 0.3])}
+    for is_alive in (False, True):
+        session.script = replace(session.script, duration=9.0, tracks=track, alive=is_alive)
+        session.seek(0.0)
+        session.toggle_playing()
+        assert until(viewer, lambda: session.time > 0.5)
+        assert viewer.face.life.is_on == is_alive
+        assert (session.scene.values["head_pitch"] != 0.0) == is_alive
+        assert session.scene.values["jaw_open"] == pytest.approx(0.3)
+        session.toggle_playing()
 
 
 def test_it_sleeps_without_input(viewer):

@@ -20,6 +20,7 @@ from risorius.geometry.arrays import Floats64
 
 from ...control_names.limits import ControlValues
 from ...errors import UserError
+from ...motion import opening_of_jaw
 from ...motion.life import Idle, Values
 from .session import Session
 
@@ -235,13 +236,15 @@ class IdleLife:
         """Whether the face has idle life now.
 
         There is none while a script is played, recorded or scrubbed, until it has ended, and none
-        while a live face moves the face.
+        while a live face moves the face. A script that is alive has idle life while it is played.
         """
         session = self._session
         if not self._is_wanted() or session.scene.face is None:
             return False
         is_in_script = session.is_following and session.time < session.script.duration
-        is_moved = session.is_playing or session.is_recording or is_in_script
+        is_in_script = is_in_script or session.is_playing
+        lives = session.script.alive and session.is_playing
+        is_moved = session.is_recording or (is_in_script and not lives)
         return not (is_moved or session.live_override.is_on) and self._without_input < SLEEP_DELAY
 
     def after(self, seconds: float, *, is_held: bool) -> Values:
@@ -258,4 +261,8 @@ class IdleLife:
         viewer = self._eye()
         session = self._session
         moved = session.controls.moved_by(session.values)
-        return self._idle.amounts(moved, viewer, self._time, is_still=is_held)
+        opening = 0.0
+        if session.is_playing:  # a script does not share its controls, even where they are 0
+            moved = moved.union(*map(session.scene.moved_by, session.script.names))
+            opening = opening_of_jaw(session.scene, session.current)
+        return self._idle.amounts(moved, viewer, self._time, is_still=is_held, opening=opening)
