@@ -26,13 +26,13 @@ ROLES = {  # role of a piece -> its motion
     "eye_left": "eyeball, turns with the left eye",
     "eye_right": "eyeball, turns with the right eye",
     "upper_teeth": "upper teeth or gums, fixed to the cranium",
-    "lower_teeth": "lower teeth or gums, moves with the mandible",
+    "lower_teeth": "lower teeth or gums, fixed to the mandible",
     "tongue": "tongue, bends",
     "mouth": "inside of the mouth, stretches between both jaws",
-    "on_skin": "lies on the skin, moves with it: lashes, brows, a beard",
+    "on_skin": "on the skin and moved by it: lashes, brows, a beard",
     "hair": "hair or a helmet, fixed to the cranium",
-    "body": "body or clothes, does not move",
-    "hidden": "is not drawn; its vertices stay in the file",
+    "body": "body or clothes, without motion",
+    "hidden": "not drawn; the vertices stay in the file",
 }
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
 FACE = slice(17, 68)  # landmarks without the jaw line
