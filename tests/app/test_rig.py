@@ -199,7 +199,7 @@ def test_each_piece_of_a_file_moves_by_its_role(whole, face):
     assert "eyeball, turns with the left eye" in whole.lines
     assert "tongue, bends" in whole.lines
     assert re.search(r"^piece \d+ \(shirt\): \d+ vertices at .*: body", whole.lines, re.M)
-    assert "body or clothes, does not move" in whole.lines
+    assert "body or clothes, without motion" in whole.lines
     skin = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     off = np.abs(own["skin"]["jawOpen"] - skin)
     assert np.median(off) < 0.5  # the parts were fitted again
