@@ -66,7 +66,7 @@ def turn_lids(
         close = min(drive[e, 0], 1.0)
         free = fold * min(alpha * drive[e, 1] + lids.lower_follows * gaze[e, 1], alpha)
         inward = max(close, drive[e, 1]) * lids.slide[1]
-        angle = lids.closing[row] * close * (0.8 + 0.2 * close)  # in height, about linear
+        angle = lids.closing[row] * close
         if lids.upper[row]:
             follows = lids.upper_follows[0 if gaze[e, 1] > 0.0 else 1]
             low = free - alpha
