@@ -60,7 +60,7 @@ def test_table_of_exported_files(script, tmp_path):
 def test_size_of_a_sample(tmp_path):
     """The page on data sets has the mean size of a sample, with float passes and without."""
     plain, floats = numbers_of(
-        DOCS / "dataset.md", r"A sample has ([\d.]+) kB; floats add ([\d.]+) MB"
+        DOCS / "dataset.md", r"A sample has ([\d.]+) kB; float passes add ([\d.]+) MB"
     )
     faces = tmp_path / "faces"
     command = ["dataset", "--count", "6", "--passes", "segmentation,depth,normal", "-o", str(faces)]
