@@ -269,15 +269,16 @@ class Pull:
         # A control is not added if it improves the squared distances by less than this share.
         least_worth = 0.025
         worth = least_worth * self._drawn
-        costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
+        single = np.eye(len(needed), dtype=bool)
+        costs = np.array([system.cost(needed | one) for one in single])
         # A control that moves other skin most is not added if it replaces a part of a used control.
         least_kept = 0.8  # share of a used control's change that must stay
         before = system.change(needed)
         for n in np.flatnonzero(~needed & ~self._is_at_home):
-            after = system.change(needed | (np.arange(len(costs)) == n))
+            after = system.change(needed | single[n])
             if (np.abs(after) < least_kept * np.abs(before))[needed].any():
                 costs[n] = np.inf
-        best = needed | (np.arange(len(costs)) == costs.argmin())
+        best = needed | single[costs.argmin()]
         # Controls whose gains differ by less than this share are used together, such as both sides
         # of a muscle.
         alike_share = 0.2
