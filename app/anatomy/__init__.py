@@ -17,7 +17,7 @@ from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import GLASSES, HAIR, MASK
 
 from ..scenes import Drawable, Face
-from ..scenes.bent_part import BentPart
+from ..scenes.bent_part import BentPart, HeadPart, at_rest
 from ..scenes.openings import opening_before
 from .muscle_bands import Muscles
 
@@ -61,7 +61,7 @@ class Anatomy:
         self._necks: list[Any] | None = None  # None before their first use
         self._muscles: Muscles | None = None
         self._followed = np.empty(0)  # state of the face at the muscles' last change
-        self._halves: dict[tuple[float, str], Any] = {}  # halves of parts, by the opened side
+        self._halves: dict[tuple[float, str], BentPart] = {}  # halves of parts, by the opened side
 
     def dissect(self, view: AnatomyView, *, has_hair: bool = True) -> Dissection:
         """Return the chosen structures in their current shape, and parts that do not hide them.
@@ -131,34 +131,28 @@ class Anatomy:
         self._followed = now
         return self._muscles
 
-    def _mouth_linings(self, view: AnatomyView) -> list[Any]:
+    def _mouth_linings(self, view: AnatomyView) -> list[HeadPart]:
         """Return the parts that line the mouth, if they can be seen."""
         is_seen = "muscles" in view.structures or SIDES[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT_PARTS)]
 
-    def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[Any]:
+    def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[BentPart]:
         """Return the hair on the opaque side; none if both sides are translucent."""
         side = SIDES[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
         return [self._half(face, part, side) for part in parts]
 
-    def _half(self, face: Face, part: Any, side: float) -> Any:
+    def _half(self, face: Face, part: HeadPart, side: float) -> BentPart:
         """Return the half of a part that is not on `side`, in its current shape."""
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
             # Locks near the cut would float above the skull of the other side.
             is_lock = part.name.startswith(HAIR) and part.strand_radius > 0.0
             least = CUT_LOCKS if is_lock else 0.0
-            is_bent = isinstance(part, BentPart)
-            whole = part.rest if is_bent else part
-            half = replace(whole, faces=part.faces[side * aside < -least])
-            self._halves[side, part.name] = BentPart(half) if is_bent else half
-        half = self._halves[side, part.name]
-        if isinstance(part, BentPart):
-            half.vertices = part.vertices
-            half.normals = part.normals
-            half.colours = part.colours
-        return half
+            half = replace(at_rest(part), faces=part.faces[side * aside < -least])
+            self._halves[side, part.name] = BentPart(half)
+        self._halves[side, part.name].copy_shape(part)
+        return self._halves[side, part.name]
 
     def _openings(self) -> dict[str, render.Opening]:
         """Return the current openings of the skin by name."""
@@ -166,8 +160,8 @@ class Anatomy:
         return {name: render.Opening(*rim) for name, rim in rims.items()}
 
     def _with_openings(
-        self, face: Face, view: AnatomyView, part: Any, openings: Mapping[str, render.Opening]
-    ) -> list[tuple[Any, render.Opening | None]]:
+        self, face: Face, view: AnatomyView, part: HeadPart, openings: Mapping[str, render.Opening]
+    ) -> list[tuple[HeadPart, render.Opening | None]]:
         """Return a part, or its two halves on opaque and translucent sides, with their openings.
 
         An opening limits the light on a part. If only bones are shown, parts that line the mouth
@@ -178,7 +172,7 @@ class Anatomy:
             return [(part, None)]
         side = SIDES[view.side]
         lit = self._half(face, part, side), opening
-        halves: list[tuple[Any, render.Opening | None]] = [lit]
+        halves: list[tuple[HeadPart, render.Opening | None]] = [lit]
         if "muscles" in view.structures or not part.name.startswith(SOFT_PARTS):
             halves.append((self._half(face, part, -side), None))
         return [half for half in halves if len(half[0].faces)]

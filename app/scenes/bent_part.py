@@ -1,14 +1,15 @@
-"""Parts that change their shape with the face."""
+"""Parts that change their shape."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from risorius.assets.model import Part
-from risorius.geometry.arrays import Floats64, Integers
+from risorius.geometry.arrays import Floats32, Floats64, Integers, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
@@ -39,9 +40,9 @@ class FaceNow(NamedTuple):
 
 
 class BentPart:
-    """A part that changes its shape; it is drawn like any other part (render/parts.py).
+    """A part that changes its shape; it has the attributes of `Part`, and is drawn like one.
 
-    It has all attributes of `rest`, the part at rest, except those that change.
+    rest: the part at rest. vertices, normals, colours: its current arrays, as of `Part`.
     """
 
     def __init__(self, rest: Part) -> None:
@@ -50,16 +51,62 @@ class BentPart:
         self.normals = rest.normals
         self.colours = rest.colours
 
-    def __getattr__(self, name: str) -> Any:
-        if name == "rest":  # a copy has no attributes yet
-            raise AttributeError(name)
-        return getattr(self.rest, name)
+    @property
+    def name(self) -> str:
+        return self.rest.name
 
-    def follow(self, now: FaceNow) -> None:
-        """Change the shape to fit the current face, relative to the part's bone."""
-        raise NotImplementedError
+    @property
+    def faces(self) -> Integers32:
+        return self.rest.faces
+
+    @property
+    def bone(self) -> str:
+        return self.rest.bone
+
+    @property
+    def shine(self) -> float:
+        return self.rest.shine
+
+    @property
+    def roots(self) -> Integers32 | None:
+        return self.rest.roots
+
+    @property
+    def strand_radius(self) -> float:
+        return self.rest.strand_radius
+
+    @property
+    def striation(self) -> Floats32 | None:
+        return self.rest.striation
+
+    @property
+    def is_enclosed(self) -> bool:
+        return self.rest.is_enclosed
 
     def take_shape(self, vertices: Floats64) -> None:
         """Set the vertices, shape (n, 3), and compute their normals."""
         self.vertices = read_only(vertices.astype(np.float32))
-        self.normals = read_only(vertex_normals(vertices, self.rest.faces).astype(np.float32))
+        self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
+
+    def copy_shape(self, part: HeadPart) -> None:
+        """Take the current arrays of a part with the same number of vertices."""
+        self.vertices = part.vertices
+        self.normals = part.normals
+        self.colours = part.colours
+
+
+HeadPart: TypeAlias = Part | BentPart
+"""A part of a head: a rigid one, or one that changes its shape."""
+
+
+class FacePart(BentPart, ABC):
+    """A part that changes its shape with the face."""
+
+    @abstractmethod
+    def follow(self, now: FaceNow) -> None:
+        """Change the shape to fit the current face, relative to the part's bone."""
+
+
+def at_rest(part: HeadPart) -> Part:
+    """Return the part at rest; a rigid part is always at rest."""
+    return part.rest if isinstance(part, BentPart) else part

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +14,7 @@ import numpy.typing as npt
 from risorius import assets
 from risorius.geometry.arrays import Floats32, Integers32
 
+from .bent_part import HeadPart
 from .face_under_skin import Face
 from .openings import Rim
 
@@ -96,7 +96,7 @@ class Drawable:
         self._positions_now = positions
 
     @property
-    def parts(self) -> tuple[Any, ...]:
+    def parts(self) -> tuple[HeadPart, ...]:
         """The parts that move with bones or the skin, in their current shape: eyes, teeth, ..."""
         return ()
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from risorius.geometry.read_only import read_only
 
 from ..control_names import split_side
 from ..control_names.limits import ControlValues, Limits
-from .bent_part import BentPart, FaceNow
+from .bent_part import FaceNow, FacePart, HeadPart, at_rest
 from .drawable import Framing, SkinImages
 from .face_under_skin import Face
 from .mask import Mask
@@ -54,6 +53,7 @@ class FaceScene(Scene):
             BUILT_IN if isinstance(self.head, assets.Head) else self.head.called or OWN_HEAD
         )
         self._parts = _parts_of(self.head, rest, faces)
+        self._following = [part for part in self._parts if isinstance(part, FacePart)]
         self._are_bent = False  # whether parts have the face's current shape
         self.framing = self._framing()
         controls = self.simulation.controls
@@ -106,16 +106,15 @@ class FaceScene(Scene):
         return self.face.positions
 
     @property
-    def parts(self) -> tuple[Any, ...]:
+    def parts(self) -> tuple[HeadPart, ...]:
         """The parts in their current shape; computed here, because pictures skip some steps."""
         if not self._are_bent:
             self._are_bent = True
             jaw = self.simulation.bones.jaw
             tongue = self.simulation.anatomy.tongue()
             now = FaceNow(self.positions, self.bone_transforms(), jaw, tongue)
-            for part in self._parts:
-                if isinstance(part, BentPart):
-                    part.follow(now)
+            for part in self._following:
+                part.follow(now)
         return self._parts
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:
@@ -135,11 +134,11 @@ class FaceScene(Scene):
         return self._moved_by[name]
 
 
-def _on_skin(part: Any, rest_positions: Floats64, faces: Any) -> Any:
-    """Return the part, or for a part on the skin a `SkinPart` that follows the skin."""
+def _on_skin(part: HeadPart, rest_positions: Floats64, faces: Integers32) -> HeadPart:
+    """Return the part, or for a part on the skin one that follows the skin."""
     if part.name == MASK:
-        return Mask(part, rest_positions)
-    return part if part.roots is None else SkinPart(part, rest_positions, faces)
+        return Mask(at_rest(part), rest_positions)
+    return part if part.roots is None else SkinPart(at_rest(part), rest_positions, faces)
 
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
@@ -162,7 +161,7 @@ def _parts_of(
     head: assets.Head | FittedHead,
     rest_positions: Floats64,
     faces: Integers32,
-) -> tuple[Any, ...]:
+) -> tuple[HeadPart, ...]:
     """Return the parts of a head, some of which can bend, with the built-in head's hair."""
     parts = tuple(_on_skin(part, rest_positions, faces) for part in shaded_mouth(head.parts))
     return (*parts, *built_in_hair(head)) if isinstance(head, assets.Head) else parts

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
 from risorius.assets.identities.mask import SHAPE
+from risorius.assets.model import Part
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_normals
 
-from .bent_part import BentPart, FaceNow
+from .bent_part import FaceNow, FacePart
 
 
-class Mask(BentPart):
+class Mask(FacePart):
     """A mask in front of the mouth, which is drawn like any other part."""
 
-    def __init__(self, part: Any, skin: Floats64) -> None:
+    def __init__(self, part: Part, skin: Floats64) -> None:
         """Make a mask that lies on a skin at rest, (V, 3)."""
         super().__init__(part)
+        assert part.mandible_shares is not None
+        self._shares = part.mandible_shares
         self._rest = part.vertices.astype(np.float64)
         count = SHAPE[0] * SHAPE[1]
         sheet = self._rest[:count]
@@ -38,7 +39,7 @@ class Mask(BentPart):
 
     def follow(self, now: FaceNow) -> None:
         """Change the shape to fit the current skin."""
-        moved = stretched_walls(self._rest, self.mandible_shares, now.mandible())
+        moved = stretched_walls(self._rest, self._shares, now.mandible())
         clearance = 2.0  # [mm]
         heights = self._heights(now.skin_on("cranium"), moved[: len(self._outward)])
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)

@@ -17,7 +17,7 @@ from risorius.assets.model import MASK, Part
 from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.read_only import read_only
 
-from .bent_part import BentPart, FaceNow
+from .bent_part import FaceNow, FacePart, HeadPart
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of parts; the cavity is dark already
 
@@ -44,7 +44,7 @@ GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of t
 GUM_SHADE = 0.35
 
 
-class Tongue(BentPart):
+class Tongue(FacePart):
     """The tongue, which is darker toward the back."""
 
     shape: Floats64 | None = None  # array of the last `follow`
@@ -65,10 +65,15 @@ class Tongue(BentPart):
         self.colours = read_only(_shaded(self.shape, self.unlit, self.front, TONGUE))
 
 
-class MouthWalls(BentPart):
+class MouthWalls(FacePart):
     """The walls of the mouth, which stretch between both jaws."""
 
     jaw: tuple[float, ...] = ()  # values of the jaw at the last `follow`
+
+    def __init__(self, part: Part, mandible_shares: Floats32) -> None:
+        """mandible_shares: weight of the mandible's motion at each vertex, (n,)."""
+        super().__init__(part)
+        self.mandible_shares = mandible_shares
 
     def follow(self, now: FaceNow) -> None:
         """Follow the mandible; do nothing if the values of the jaw have not changed."""
@@ -83,16 +88,16 @@ class MouthWalls(BentPart):
         self.take_shape(stretched_walls(rest, self.mandible_shares, now.mandible()))
 
 
-def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
+def shaded_mouth(parts: Sequence[Part]) -> tuple[HeadPart, ...]:
     """Darken parts of the mouth toward the back, and make some of them bendable."""
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
-    def shaded(part: Any) -> Any:
+    def shaded(part: Part) -> HeadPart:
         """Return a darkened part of the mouth, or another part unchanged."""
         if part.name == "tongue":
             return Tongue(part, float(front))
         if part.mandible_shares is not None and part.name != MASK:
-            return MouthWalls(part)
+            return MouthWalls(part, part.mandible_shares)
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)
@@ -104,7 +109,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     return tuple(shaded(part) for part in parts)
 
 
-def _painted_tongue(part: Any) -> Floats32:
+def _painted_tongue(part: Part) -> Floats32:
     """Paint a tongue, (n, 3): red edges, a pale coat, a dark groove; chosen by eye."""
     vertices = part.vertices.astype(np.float64)
     middle = vertices[:, 0].mean()

@@ -6,27 +6,27 @@ its vertices turn with the skin there (refine.Embedding).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from risorius.assets.fitting.warp import nearest_on
+from risorius.assets.model import Part
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.read_only import read_only
 
-from .bent_part import BentPart, FaceNow
+from .bent_part import FaceNow, FacePart
 
 
-class SkinPart(BentPart):
+class SkinPart(FacePart):
     """A part that follows the skin."""
 
-    def __init__(self, part: Any, skin: Floats64, faces: Integers32) -> None:
+    def __init__(self, part: Part, skin: Floats64, faces: Integers32) -> None:
         """Bind a part with `roots` to the skin at rest, (V, 3), with triangles (F, 3)."""
         from risorius.refine import Embedding  # lists of controls do not need it
 
         super().__init__(part)
+        assert part.roots is not None
         rest = part.vertices.astype(np.float64)
         normals = part.normals.astype(np.float64)
         roots, root_of = np.unique(part.roots, return_inverse=True)  # number of each vertex's root

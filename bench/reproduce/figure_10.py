@@ -22,7 +22,7 @@ from risorius.app.capture.captions import LANCZOS
 from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
-from risorius.app.scenes.bent_part import BentPart
+from risorius.app.scenes.bent_part import HeadPart, at_rest
 from risorius.assets import Part
 from risorius.geometry.arrays import Flags, Unsigned8
 
@@ -174,11 +174,15 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             yield viewpoint.expression, cells
 
 
-def _in_green(part: Part | BentPart) -> Part:
+def _in_green(part: HeadPart) -> Part:
     """Return a part in its current shape, green and without highlights."""
-    rest = part.rest if isinstance(part, BentPart) else part
-    colours = np.tile(GREEN, (len(rest.colours), 1))
-    return replace(rest, vertices=part.vertices, normals=part.normals, colours=colours, shine=0.0)
+    return replace(
+        at_rest(part),
+        vertices=part.vertices,
+        normals=part.normals,
+        colours=np.tile(GREEN, (len(part.colours), 1)),
+        shine=0.0,
+    )
 
 
 def _smaller(image: Image) -> Image:
