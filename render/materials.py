@@ -64,7 +64,8 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
     set_light(program, style.light)
     if "albedo" in program:  # absent where a texture replaces it
         program["albedo"] = tuple(to_linear(style.albedo))
-    program["inner_albedo"] = tuple(to_linear(style.inside))
+    if "inner_albedo" in program:  # absent where only front faces are drawn
+        program["inner_albedo"] = tuple(to_linear(style.inside))
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
     program["sharpness"] = SKIN_SHARPNESS

@@ -35,14 +35,14 @@ from .programs import compile_program, write_uniform
 from .render_target import RenderTarget
 from .sample_mixer import Mixer, SampleMixer
 from .shadow import Shadow, ShadowMap
-from .stream import GpuStream, MeshBuffers, Stream, TriangleGroup
+from .sides import DrawnGroups, draw_nearest, draw_sides
+from .stream import GpuStream, Stream, TriangleGroup
 from .style import ColourBy, Shading, Style
 from .surface import NEWEST_VERSION, Image, Surface
 from .texture import BumpMap
 from .translucency import (
     SUNK_DEPTH,
     blending,
-    draw_nearest,
     fade_defines,
     set_cut,
     set_translucency,
@@ -223,44 +223,40 @@ class Renderer:
     def _draw_skin(self, frame: Frame, view: PlacedView, shadow: Shadow | None) -> None:
         """Draw the mesh."""
         assert frame.skin is not None
-        stream = frame.skin.stream
+        skin = frame.skin
+        stream = skin.stream
         style = frame.style
         values = None
         if style.colour_by is not ColourBy.NONE:
-            values = value_texture(self._gl, frame.skin.values, stream.triangle_count)
+            values = value_texture(self._gl, skin.values, stream.triangle_count)
         if not self._use_surfaces(view, stream.corners):
             return
-        fade = fade_defines(frame.skin, view)
-        mouth = () if frame.skin.mouth is None else ("LIPS", RIM_DEFINE)
+        fade = fade_defines(skin, view)
+        mouth = () if skin.mouth is None else ("LIPS", RIM_DEFINE)
         if values is not None:
             values.use(_VALUE_UNIT)
-        drawn = [
-            (self._skin_program(frame, view, maps, shadow, (*mouth, *fade)), group)
-            for group, maps in _groups(frame.skin, style)
-        ]
+
+        def groups(*defines: str) -> DrawnGroups:
+            """Return the groups of triangles, with programs that have these defines."""
+            return [
+                (self._skin_program(frame, view, maps, shadow, defines), group)
+                for group, maps in _groups(skin, style)
+            ]
+
         if frame.is_opened:
+            drawn = groups(*mouth, *fade)
             for program, _ in drawn:
                 set_translucency(program, frame, view)
             draw_nearest(self._gl, stream, drawn, is_cut=frame.cut is not None)
             return
         with blending(self._gl, hides=True) if fade else nullcontext():
             if self.surface.is_software:
-                self._draw_sides(stream, drawn)
+                needed = mouth if "MOUTH" in fade else ()
+                front = groups("FRONT_ONLY", *needed, *fade)
+                draw_sides(self._gl, stream, front, groups(*mouth, *fade))
                 return
-            for program, group in drawn:
+            for program, group in groups(*mouth, *fade):
                 stream.draw(program, group)
-
-    def _draw_sides(
-        self, stream: MeshBuffers, drawn: Sequence[tuple[moderngl.Program, TriangleGroup]]
-    ) -> None:
-        """Draw front faces first; then most back faces are hidden, and software skips them."""
-        self._gl.enable(moderngl.CULL_FACE)
-        for side in ("back", "front"):
-            self._gl.cull_face = side
-            for program, group in drawn:
-                stream.draw(program, group)
-        self._gl.cull_face = "back"
-        self._gl.disable(moderngl.CULL_FACE)
 
     def _skin_program(
         self,
@@ -280,7 +276,7 @@ class Renderer:
         write_uniform(program, "projection", view.projection)
         set_numbers(program, SKIN_NUMBERS, view)
         set_mesh(program, style, view, self._line_scale)
-        if frame.skin.mouth is not None:
+        if frame.skin.mouth is not None and "LIPS" in defines:
             set_rim(program, "rim", frame.skin.mouth, view)
         if shadow is not None:
             shadow.set_uniforms(program, _SHADOW_UNIT)

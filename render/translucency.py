@@ -1,7 +1,7 @@
-"""Draw translucent meshes, and hide parts below them; only the nearest layer is blended."""
+"""Blend translucent meshes, and hide parts below them."""
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import moderngl
@@ -10,7 +10,6 @@ import numpy as np
 from .camera import PlacedView
 from .frame import Frame, Plane, Skin
 from .render_target import intersection
-from .stream import MeshBuffers, TriangleGroup
 
 CUT_WIDTH = 0.008  # visible thickness of cut skin, as a fraction of the scene's radius
 # Greatest distance that parts may come out of the skin, as a fraction of the scene's radius.
@@ -51,33 +50,6 @@ def changing_depth_alone(gl: moderngl.Context) -> Iterator[None]:
         yield
     finally:
         gl.disable(moderngl.BLEND)
-
-
-def draw_nearest(
-    gl: moderngl.Context,
-    stream: MeshBuffers,
-    groups: Sequence[tuple[moderngl.Program, TriangleGroup]],
-    *,
-    is_cut: bool,
-) -> None:
-    """Blend only the nearest layer of a mesh: draw depths first, then colours at these depths.
-
-    groups: programs, and the groups of triangles that they draw.
-    is_cut: whether a part of the mesh is opaque; its inner side is then drawn first.
-    """
-    gl.enable(moderngl.CULL_FACE)
-    if is_cut:
-        gl.cull_face = "front"
-        for program, group in groups:
-            stream.draw(program, group)
-    gl.cull_face = "back"
-    with changing_depth_alone(gl):
-        for program, group in groups:
-            stream.draw(program, group)
-    with blending(gl):
-        for program, group in groups:
-            stream.draw(program, group)
-    gl.disable(moderngl.CULL_FACE)
 
 
 def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) -> None:

@@ -12,8 +12,14 @@
 // FADED: skin that fades by vertex. MOUTH: the fading part may overlap the mouth on the screen; needs LIPS.
 // TRIANGLES: each triangle has its own surface number.
 // FILLED, BEHIND: parts that get light through an opening (opening.glsl).
+// FRONT_ONLY: skin of which only front faces are drawn.
 
 #include "lighting.glsl"
+#if defined(FRONT_ONLY)
+#define IS_FRONT true
+#else
+#define IS_FRONT gl_FrontFacing
+#endif
 #if defined(FILLED) || defined(BEHIND) || defined(LIPS)
 #include "opening.glsl"
 #endif
@@ -383,7 +389,7 @@ vec3 shading_normal() {
 #elif defined(COLOURED)
     return normalize(surface.normal);
 #else
-    return normalize(gl_FrontFacing ? surface.normal : -surface.normal);
+    return normalize(IS_FRONT ? surface.normal : -surface.normal);
 #endif
 }
 #endif
@@ -396,10 +402,10 @@ void main() {
     // The inner side of the neck is hidden, else a view from below would show it. A chin that moves
     // down may pull the front of the neck in front of the mouth, where it would leave a hole.
     // Only MOUTH discards, because discarding disables early depth tests.
-    bool is_hidden = !gl_FrontFacing && (solid < 1.0 || surface.fade.y < 0.0);
+    bool is_hidden = !IS_FRONT && (solid < 1.0 || surface.fade.y < 0.0);
 #if defined(MOUTH)
     bool in_mouth = (is_hidden || solid < 1.0) && is_in_mouth(surface.position);
-    if (in_mouth && gl_FrontFacing) discard;
+    if (in_mouth && IS_FRONT) discard;
     if (in_mouth) solid = 1.0;
     is_hidden = is_hidden && !in_mouth;
 #endif
@@ -417,7 +423,7 @@ void main() {
 #endif
     vec3 normal = shading_normal();
 #if defined(RELIEF)
-    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
+    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, IS_FRONT);
     normal = bumped(normal, bump.slope, mat2x3(surface.u_gradient, surface.v_gradient));
 #endif
 #if defined(FIBRES)
@@ -476,13 +482,13 @@ void main() {
 #endif
 #if defined(COLOURED)
     light *= 0.96;  // less light reaches parts in sockets and mouths
-#else
+#elif !defined(FRONT_ONLY)
     // Back faces that are nearly edge-on lie on the outline, where front and back have equal depths.
     // They get the light of the front, else dark specks of the inner side would show there.
-    float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
+    float inwardness = IS_FRONT ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
 #if defined(LIPS)
     // Inside, cheeks and lips get as little light as the gums beside them.
-    if (!gl_FrontFacing && is_in_mouth(surface.position)) {
+    if (!IS_FRONT && is_in_mouth(surface.position)) {
         inner *= reddened(light_let_in(surface.position, vec3(0.0)));
         inwardness = 1.0;
     }
@@ -518,7 +524,7 @@ void main() {
 #elif defined(TRANSLUCENT)
     // Skin is more opaque where it is seen from the side, so the outline of the face shows.
     float from_cut = dot(cut, vec4(surface.position, 1.0));
-    if (!gl_FrontFacing && from_cut < 0.0) discard;
+    if (!IS_FRONT && from_cut < 0.0) discard;
     float grazing = 1.0 - clamp(facing, 0.0, 1.0);
     float veil = grazing * grazing * min(3.0 * opacity, 1.0);
     float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);
