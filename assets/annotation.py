@@ -31,8 +31,8 @@ from .loading import load
 from .model import Head, Segment
 
 FIRST_INNER = 17  # the number of the first landmark that is not of the jaw
-LANES = 25  # paths over the skin on which a side's outline is searched, from eye to chin
-STEPS = 25  # places along each of them
+LANE_COUNT = 25  # paths over the skin on which a side's outline is searched, from eye to chin
+LANE_STEPS = 25  # places along each of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +40,8 @@ class Annotation:
     """The points that annotators mark, on the skin of one head.
 
     inner: surface points of the landmarks 17 to 67, in their order. lanes: surface points of the
-    paths on which the outline is searched: LANES paths of STEPS points on the right side, then as
-    many on the left. Each path runs from the cheek outward.
+    paths on which the outline is searched: LANE_COUNT paths of LANE_STEPS points on the right side,
+    then as many on the left. Each path runs from the cheek outward.
     """
 
     inner: SurfacePoints
@@ -56,8 +56,8 @@ class Annotation:
         return self.inner.interpolate(positions)
 
     def outline_paths(self, positions: Floats64) -> Floats64:
-        """Paths on which the outline is searched, (2, LANES, STEPS, 3), on a skin, (V, 3)."""
-        return self.lanes.interpolate(positions).reshape(2, LANES, STEPS, 3)
+        """Paths of the outline's search on a skin (V, 3), (2, LANE_COUNT, LANE_STEPS, 3)."""
+        return self.lanes.interpolate(positions).reshape(2, LANE_COUNT, LANE_STEPS, 3)
 
 
 def annotation_of(head: Head | FittedHead) -> Annotation:
@@ -89,8 +89,9 @@ def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
         other = int(np.flatnonzero(mirrored == known.landmarks[number])[0])
         uv[number - FIRST_INNER] = place
         uv[other - FIRST_INNER] = place if other == number else _mirror_image(np.array(place))
-    ends = [_evenly_spaced(np.array(table["outline"][name]), LANES) for name in ("inner", "outer")]
-    fraction = np.linspace(0.0, 1.0, STEPS)[:, None]
+    outline = table["outline"]
+    ends = [_evenly_spaced(np.array(outline[name]), LANE_COUNT) for name in ("inner", "outer")]
+    fraction = np.linspace(0.0, 1.0, LANE_STEPS)[:, None]
     left = ends[0][:, None] + fraction * (ends[1] - ends[0])[:, None]
     lanes = np.stack([_mirror_image(left), left])
     return points_on_texture(uv), points_on_texture(lanes.reshape(-1, 2))

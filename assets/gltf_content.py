@@ -25,7 +25,7 @@ import numpy.typing as npt
 from .errors import AssetError
 from .user_files import MOST_VERTICES, beside, named, read_file, text_with_names
 
-COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+COMPONENT_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 DRACO = "KHR_draco_mesh_compression"
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 MOST_MEGABYTES = 100  # of one file that a document names
@@ -203,7 +203,7 @@ class _Decompression:
         """Store the rows of an accessor (n, width), each in a multiple of four bytes."""
         if len(rows) > 3 * MOST_VERTICES:
             raise AssetError(f"has {len(rows)} compressed rows; reduce it in a modelling program")
-        kind = np.dtype(COMPONENTS[accessor["componentType"]])
+        kind = np.dtype(COMPONENT_TYPES[accessor["componentType"]])
         stored = np.ascontiguousarray(rows.reshape(len(rows), -1).astype(kind))
         if "min" in accessor and len(stored):  # Draco rounds places, and so moves their bounds
             accessor.update(min=stored.min(axis=0).tolist(), max=stored.max(axis=0).tolist())

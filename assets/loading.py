@@ -18,13 +18,13 @@ import numpy.typing as npt
 from .data_files import read_arrays, read_toml
 from .errors import AssetError
 from .model import Eye, Head, Layer, Part, Plane
-from .sheets import CELL, COLUMNS, ROWS, make_grid
+from .sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
 WORDS_FILE = FOLDER / "words.toml"
-ARRAYS = (  # arrays of the data file that become fields of a head unchanged
+ARRAY_NAMES = (  # arrays of the data file that become fields of a head unchanged
     "vertices faces landmarks bone_depth mandible_weight jaw_axis mirror uv".split()
 )
 LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
@@ -52,7 +52,7 @@ def load(name: str) -> Head | Plane:
     if name == "head":
         return load_head()
     if name == "plane":
-        return Plane(*make_grid(COLUMNS, ROWS, CELL))
+        return Plane(*make_grid(COLUMN_COUNT, ROW_COUNT, CELL_SIZE))
     others = "a mesh file is read by `read_mesh`, a head fitted by `fitting.fit_head`"
     raise AssetError(f"no asset is called {name!r}; available: head, plane; {others}")
 
@@ -66,7 +66,7 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
     names = arrays["anatomy_names"].tolist()
     rings = [name for name in arrays if name.startswith("ring_")]
     return Head(
-        **{name: arrays[name] for name in ARRAYS},
+        **{name: arrays[name] for name in ARRAY_NAMES},
         anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
         rings={name.removeprefix("ring_"): arrays[name] for name in rings},
         eyes=tuple(

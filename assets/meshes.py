@@ -28,8 +28,9 @@ from .topology import unique_points
 from .user_files import MOST_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
-FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
-FARTHEST = 1e9  # of a coordinate, in any unit: far beyond any mesh, and its cube is still finite
+MESH_FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
+# The greatest coordinate in any unit: far beyond any mesh, and its cube is still finite.
+FARTHEST_COORDINATE = 1e9
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,8 @@ def read_mesh(path: str | Path) -> Mesh:
     """
     suffix = Path(path).suffix.lower().lstrip(".")
     try:
-        if suffix not in FORMATS:
-            known = ", ".join(f".{name}" for name in FORMATS)
+        if suffix not in MESH_FORMATS:
+            known = ", ".join(f".{name}" for name in MESH_FORMATS)
             cure = "unpack it" if suffix in ("gz", "zip") else "save the mesh as one of these"
             raise AssetError(f"its name must end in {known}: {cure}")
         most_megabytes = 100
@@ -162,12 +163,12 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
             f"triangle {where} (counted from 0) has the vertices {faces[where].tolist()}; "
             f"allowed are 0 to {len(vertices) - 1}: save the mesh anew"
         )
-    is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # False for NaN
+    is_near = (np.abs(vertices) <= FARTHEST_COORDINATE).all(axis=1)  # False for NaN
     if not is_near.all():
         where = int(np.argmin(is_near))
         raise AssetError(
             f"vertex {where} (counted from 0) is at {vertices[where].tolist()}; it must be finite "
-            f"numbers up to {FARTHEST:g}: remove it, or choose another unit"
+            f"numbers up to {FARTHEST_COORDINATE:g}: remove it, or choose another unit"
         )
 
 

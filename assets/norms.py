@@ -31,7 +31,9 @@ class Norm:
 
 
 _ROWS = read_toml(Path(__file__).with_name("norms.toml"))
-DISTANCES: dict[str, tuple[str, str]] = {code: (*row["points"],) for code, row in _ROWS.items()}
+LANDMARK_PAIRS: dict[str, tuple[str, str]] = {
+    code: (*row["points"],) for code, row in _ROWS.items()
+}
 NORMS = {
     code: Norm(Sample(*row["women"]), Sample(*row["men"]))
     for code, row in _ROWS.items()
@@ -40,7 +42,7 @@ NORMS = {
 
 
 def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, float]:
-    """Return all `DISTANCES` between vertices (V, 3), code -> [mm].
+    """Return all `LANDMARK_PAIRS` between vertices (V, 3), code -> [mm].
 
     A measure of one side is the mean of both.
     """
@@ -49,10 +51,11 @@ def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, flo
         """Distance between two points."""
         return float(np.linalg.norm(vertices[anatomy[first]] - vertices[anatomy[second]]))
 
-    right = {name: name.replace("_left", "_right") for pair in DISTANCES.values() for name in pair}
+    names = {name for pair in LANDMARK_PAIRS.values() for name in pair}
+    right = {name: name.replace("_left", "_right") for name in names}
     return {
         code: between(a, b)
         if "_right" in a + b
         else 0.5 * (between(a, b) + between(right[a], right[b]))
-        for code, (a, b) in DISTANCES.items()
+        for code, (a, b) in LANDMARK_PAIRS.items()
     }

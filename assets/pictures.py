@@ -26,7 +26,7 @@ from .user_files import beside, named, read_file
 from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
 LARGEST_SIDE = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
-KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n"  # first bytes of a KTX 2 file
+KTX2_MAGIC = b"\xabKTX 20\xbb\r\n\x1a\n"  # first bytes of a KTX 2 file
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def decoded(content: bytes, name: str) -> Image:
     """
     import PIL.Image  # imported late, so that loading a head is fast
 
-    if content.startswith(KTX2):
+    if content.startswith(KTX2_MAGIC):
         return _basis_picture(content, name)
     try:
         with warnings.catch_warnings():  # Pillow warns of pictures that decompress to gigabytes

@@ -28,10 +28,11 @@ class Complexion:
     hair: tuple[float, float, float]
 
 
-SHIPPED = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # the complexion of the shipped picture
+# The complexion of the shipped picture.
+SHIPPED_COMPLEXION = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))
 COMPLEXIONS = (  # from light to dark
     Complexion(0.17, 1.05, (0.33, 0.235, 0.165)),
-    SHIPPED,
+    SHIPPED_COMPLEXION,
     Complexion(0.75, 0.95, (0.135, 0.095, 0.075)),
     Complexion(1.55, 0.85, (0.075, 0.058, 0.052)),
 )
@@ -45,8 +46,8 @@ def changes_of(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats
     hair = [np.interp(melanin, amounts, channel) for channel in hairs.T]
     more = max(melanin - amounts[-1], 0.0)
     dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
-    density = (melanin - more - SHIPPED.melanin) * MELANIN + more * dark_melanin
-    return density, (blood * usual - SHIPPED.blood) * BLOOD, np.array(hair)
+    density = (melanin - more - SHIPPED_COMPLEXION.melanin) * MELANIN + more * dark_melanin
+    return density, (blood * usual - SHIPPED_COMPLEXION.blood) * BLOOD, np.array(hair)
 
 
 def paleness_of_lips(pale: float, density: Floats64) -> Floats64:

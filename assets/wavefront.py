@@ -23,7 +23,8 @@ from ..geometry.arrays import Floats64, Integers64
 from .errors import AssetError
 from .user_files import named, text_with_names
 
-PLACING = ("-o", "-s", "-t")  # options of maps in a material library with up to three numbers
+# Options of maps in a material library with up to three numbers.
+PLACING_OPTIONS = ("-o", "-s", "-t")
 
 
 @dataclass(frozen=True)
@@ -229,7 +230,7 @@ def _picture_of(rest: str) -> MaterialPicture:
     values: dict[str, list[str]] = {}
     option, after = _parted(rest)
     option_words = {  # numbers of words after each option, including these
-        **dict.fromkeys(PLACING, 3),
+        **dict.fromkeys(PLACING_OPTIONS, 3),
         "-mm": 2,
         **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
         **dict.fromkeys(("-imfchan", "-type", "-colorspace"), 1),
@@ -239,7 +240,7 @@ def _picture_of(rest: str) -> MaterialPicture:
         values[option] = []
         for _ in range(option_words[option]):
             value, after = _parted(rest)
-            if not after or (option in PLACING and not _is_number(value)):
+            if not after or (option in PLACING_OPTIONS and not _is_number(value)):
                 break  # two of three numbers may be missing, and the last word is the name
             values[option].append(value)
             rest = after

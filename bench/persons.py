@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius.assets.identities import sample_identity
-from risorius.assets.identities.space import PRESSED, Sex, person_space
+from risorius.assets.identities.space import PRESSED_DEPTHS, Sex, person_space
 from risorius.assets.norms import NORMS, measures_of
 
 from .report import Target, at_most, table
@@ -52,7 +52,7 @@ def measure(count: int) -> list[Row]:
         means[sex] = {code: float(np.mean([each[code] for each in found])) for code in NORMS}
     rows = []
     for code, norm in NORMS.items():
-        pressed = PRESSED.get(code, 0.0)
+        pressed = PRESSED_DEPTHS.get(code, 0.0)
         women = means[Sex.WOMAN][code] - pressed
         men = means[Sex.MAN][code] - pressed
         published = norm.women.mean, norm.men.mean

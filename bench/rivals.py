@@ -28,7 +28,7 @@ from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.scenes import PlaneScene
-from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
+from risorius.assets.sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
 from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
@@ -121,7 +121,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
     plane.pose({"amplitude": 1.0})
     plane.step(1.0 / 30.0)
     fineness = 12  # cells of the true sine per cell of the plane, in each direction
-    flat, _ = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
+    flat, _ = make_grid(COLUMN_COUNT * fineness, ROW_COUNT * fineness, CELL_SIZE / fineness)
     sine, _ = plane.waved(flat)
     yield Case("sine plane", plane.faces, plane.rest_positions, plane.positions.copy(), sine)
 

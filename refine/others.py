@@ -45,7 +45,7 @@ from .mesh.creases import sharpened
 
 CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Four children of a triangle with corners 0 1 2 and midpoints 3 4 5 of its edges."""
-LEVELS = Option("how often all edges are split", 1, 4, name="levels", kind="integer")
+LEVELS_OPTION = Option("how often all edges are split", 1, 4, name="levels", kind="integer")
 """Most levels, chosen: four levels make 256 triangles of each, half a million of a face."""
 
 
@@ -78,12 +78,12 @@ class Loop(BaseRefiner):
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
         *,
-        levels: Annotated[int, LEVELS] = 1,
+        levels: Annotated[int, LEVELS_OPTION] = 1,
         **values: Unpack[Values],
     ) -> None:
         """Bind to a mesh (see `registry.create`). `levels`: 1 to 4, how often edges are split."""
         super().__init__(faces, rest_positions, **values)
-        LEVELS.check(levels)
+        LEVELS_OPTION.check(levels)
         self.edge_splits[:] = levels
         finest = _Refined.from_mesh(
             self.connectivity, None if self._values is None else self._values.values

@@ -23,7 +23,7 @@ from risorius.geometry.arrays import Floats32, Floats64, Unsigned32
 from risorius.refine import GpuStream
 
 from .context import LEAST_VERSION, GpuError
-from .rules import THREADS, Rules
+from .rules import PASS_ELEMENTS, Rules
 from .tables import Tables, groups_of
 
 MOST_GROUPS = 65535
@@ -124,7 +124,7 @@ class Frames:
 
 def groups_of_pass(name: str, sizes: dict[str, int]) -> int:
     """Number of groups of threads of a pass, at least one."""
-    return max([1, *(groups_of(sizes[count]) for count in THREADS[name])])
+    return max([1, *(groups_of(sizes[count]) for count in PASS_ELEMENTS[name])])
 
 
 def programs_of(

@@ -26,7 +26,7 @@ from risorius.refine import (
 ONE = np.float32(1.0)
 Arrays = Mapping[str, npt.NDArray[np.generic]]
 
-THREADS: Mapping[str, tuple[str, ...]] = {
+PASS_ELEMENTS: Mapping[str, tuple[str, ...]] = {
     "normals": ("vertex_count",),
     "steepen": ("vertex_count",),
     "displace": ("edge_count",),
@@ -102,7 +102,7 @@ class Rules:
         )
         left_out = {"quarters"} if self.scheme == "cubic" else set(curves)
         left_out |= set() if self.blends else {"place_centres"}
-        return [name for name in THREADS if name not in left_out]
+        return [name for name in PASS_ELEMENTS if name not in left_out]
 
     @property
     def switches(self) -> list[str]:

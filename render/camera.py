@@ -21,7 +21,7 @@ from ..geometry.arrays import Floats64
 from .render_target import Rectangle, intersection, scaled
 
 FIELD_OF_VIEW = 25.0  # [degrees]; a portrait lens (about 80 mm on 35 mm film) keeps noses small
-MARGIN = 0.06  # free fraction of the frame on each side, because mouths open and brows rise
+FRAME_MARGIN = 0.06  # free fraction of the frame on each side, because mouths open and brows rise
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
 _STEEPEST = 89.0  # [degrees]; greatest pitch, because beyond 90 "up" would tip over
 
@@ -173,7 +173,7 @@ class OrbitCamera:
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 
-    def fit(self, points: npt.NDArray[Any], margin: float = MARGIN) -> None:
+    def fit(self, points: npt.NDArray[Any], margin: float = FRAME_MARGIN) -> None:
         """Centre `points`, (n, 3), in the frame, and move as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())

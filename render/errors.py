@@ -8,7 +8,7 @@ Linux, with moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5.
 import os
 import re
 
-OFFSCREEN = "offscreen OpenGL"
+OFFSCREEN_TITLE = "offscreen OpenGL"
 
 # Triples: pattern of the raw text, reason, remedy; the first matching pattern counts.
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
@@ -41,7 +41,7 @@ def diagnose(attempt: str, raw: object) -> GLError:
     text = " ".join(str(raw).split()) or "no reason given"
     set_by_hand = [name for name in os.environ if name.startswith("GLCONTEXT_")]
     unset = ""
-    if attempt.startswith(OFFSCREEN) and set_by_hand:
+    if attempt.startswith(OFFSCREEN_TITLE) and set_by_hand:
         unset = f"unset {', '.join(set_by_hand)}"
     for pattern, why, cure in _DIAGNOSES:
         if re.search(pattern, text):

@@ -16,12 +16,12 @@ from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
 from .translucency import blending
 
-OF_SHELLS = "in_strand", "in_way", "in_dense"
+SHELL_ATTRIBUTES = "in_strand", "in_way", "in_dense"
 # Number of columns of a part's striation -> kind of part, layout and attributes of its vertices.
-STRIPED = {
+STRIATION_LAYOUTS = {
     2: ("FIBRES", " 2f", "in_fibre"),
     5: ("LOCKS", " 3f 1f 1f", "in_along", "in_half", "in_opacity"),
-    6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS),
+    6: ("SHELLS", " 2f 3f 1f", *SHELL_ATTRIBUTES),
 }
 LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # smallest number of shells
@@ -53,7 +53,7 @@ class PartBuffers:
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
-            self.kind, layout, *more = STRIPED[columns]
+            self.kind, layout, *more = STRIATION_LAYOUTS[columns]
         self._way = None if part.striation is None or columns < 6 else part.striation[:, 2:5]
         if self._way is not None:
             self._thick = float(np.abs((self._way * part.normals).sum(axis=1)).max())

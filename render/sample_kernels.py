@@ -13,16 +13,16 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32, Unsigned8
 from ..jit import njit
 
-SAMPLES = np.array([(0.375, 0.125), (0.875, 0.375), (0.125, 0.625), (0.625, 0.875)])
+SAMPLE_POSITIONS = np.array([(0.375, 0.125), (0.875, 0.375), (0.125, 0.625), (0.625, 0.875)])
 """Positions x and y of samples in a pixel; as in drivers, no two share a row or a column."""
 
-SURFACE = 0
-HAIR = 1
-TRIANGLES = 2  # each triangle counts as a separate surface
+SURFACE_KIND = 0
+HAIR_KIND = 1
+TRIANGLE_KIND = 2  # each triangle counts as a separate surface
 _LEAST_FACING = 0.05  # as in shell_layers.glsl
 _OFFSETS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # offsets to a pixel and neighbours
-_SKIN = 190  # smallest surface number of skin, see surface_number.glsl
-_DEPTHS = 255.0 * 255.0  # number of steps of a pixel's stored depth
+_SKIN_NUMBER = 190  # smallest surface number of skin, see surface_number.glsl
+_DEPTH_STEPS = 255.0 * 255.0  # number of steps of a pixel's stored depth
 
 
 _Linear = tuple[float, float, float]  # a, b and c of the linear function a x + b y + c
@@ -45,7 +45,7 @@ class Pixels(NamedTuple):
 @njit
 def _differ(first: float, second: float) -> bool:
     """Whether two surface numbers belong to different surfaces; numbers of skin vary slowly."""
-    return abs(first - second) >= (12.5 if min(first, second) >= _SKIN else 0.5)
+    return abs(first - second) >= (12.5 if min(first, second) >= _SKIN_NUMBER else 0.5)
 
 
 @njit
@@ -72,7 +72,7 @@ def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
     is_edge = np.empty(width, np.uint8)
     count = 0
     for y in range(height):
-        _mark_row(numbers[y : y + 3], depths[y : y + 3], _DEPTHS * least, slope, is_edge)
+        _mark_row(numbers[y : y + 3], depths[y : y + 3], _DEPTH_STEPS * least, slope, is_edge)
         for x in range(width):
             before[y, x] = count
             if is_edge[x]:
@@ -94,7 +94,7 @@ def _mark_row(
     """
     number_below, number_here, number_above = numbers[0], numbers[1], numbers[2]
     below, here, above = depths[0], depths[1], depths[2]
-    most = np.int32(0.5 * _DEPTHS)
+    most = np.int32(0.5 * _DEPTH_STEPS)
     for x in range(len(is_edge)):
         number = number_here[x + 1]
         differs = _differ(number_here[x], number) | _differ(number_here[x + 2], number)
@@ -124,9 +124,9 @@ def rasterise(
 
     corners: homogeneous coordinates (V, 4). Divided by the last column, the others are x and y
         [pixels of the area], and depth, 0 to 1.
-    values: two numbers per vertex, (V, 2). For HAIR: density, and cosine between normal and line of
-        sight. For other kinds: y of the normal, and distance from a cut, positive in front.
-    kind: SURFACE, HAIR or TRIANGLES.
+    values: two numbers per vertex, (V, 2). For HAIR_KIND: density, and cosine between normal and
+        line of sight. For other kinds: y of the normal, and distance from a cut, positive in front.
+    kind: SURFACE_KIND, HAIR_KIND or TRIANGLE_KIND.
     numbers: the uniform `numbers` of surface_number.glsl.
     has_back: whether back faces are visible, too.
     depths: depth of each sample, (n, number of samples); written.
@@ -177,9 +177,9 @@ def _rasterise_side(
                 if _at(plane, x + 0.5, y + 0.5) - slack > far or not _may_touch(edges, sign, x, y):
                     continue
                 number = -1.0
-                for s in range(len(SAMPLES)):
-                    px = x + SAMPLES[s, 0]
-                    py = y + SAMPLES[s, 1]
+                for s in range(len(SAMPLE_POSITIONS)):
+                    px = x + SAMPLE_POSITIONS[s, 0]
+                    py = y + SAMPLE_POSITIONS[s, 1]
                     depth = _at(plane, px, py)
                     if not 0.0 <= depth <= depths[n, s] or not _is_inside(edges, sign, px, py):
                         continue
@@ -311,13 +311,13 @@ def _number(
 
     one, two: interpolated `values` of `rasterise`.
     """
-    if kind == HAIR:
+    if kind == HAIR_KIND:
         # As in shell_layers.glsl.
         has_edge = one >= 0.9 * min(max(2.5 * two, _LEAST_FACING), 1.0)
         return numbers[0] if has_edge else -1.0
     if not is_front:
         return numbers[2] if two >= 0.0 else -1.0
-    if kind == TRIANGLES:
+    if kind == TRIANGLE_KIND:
         return 1.0 + (numbers[0] + 37.0 * (triangle % 188)) % 188.0
     return numbers[0] + numbers[1] * min(max(0.5 + 0.5 * one, 0.0), 1.0)
 
@@ -342,17 +342,17 @@ def mix(
     for n in range(len(pixels.columns)):
         x = pixels.columns[n]
         y = pixels.rows[n]
-        own = (255.0 * surfaces[y, x, 1] + surfaces[y, x, 2]) / _DEPTHS
+        own = (255.0 * surfaces[y, x, 1] + surfaces[y, x, 2]) / _DEPTH_STEPS
         allowed = min(least + slope * own, 0.5)
         red = green = blue = opaque = 0
-        for s in range(len(SAMPLES)):
+        for s in range(len(SAMPLE_POSITIONS)):
             best = 2.0
             shown_x, shown_y = x, y
             for k in range(len(_OFFSETS)):
                 at_x = min(max(x + _OFFSETS[k, 0], 0), width - 1)
                 at_y = min(max(y + _OFFSETS[k, 1], 0), height - 1)
                 known = surfaces[at_y, at_x]
-                off = abs((255.0 * known[1] + known[2]) / _DEPTHS - depths[n, s])
+                off = abs((255.0 * known[1] + known[2]) / _DEPTH_STEPS - depths[n, s])
                 if _differ(known[0], seen[n, s]):
                     off += 1.0
                 if k == 0 and off <= allowed:
@@ -364,9 +364,9 @@ def mix(
             green += colours[shown_y, shown_x, 1]
             blue += colours[shown_y, shown_x, 2]
             opaque += colours[shown_y, shown_x, 3]
-        half = len(SAMPLES) // 2
-        mixed[y, x, 0] = (red + half) // len(SAMPLES)
-        mixed[y, x, 1] = (green + half) // len(SAMPLES)
-        mixed[y, x, 2] = (blue + half) // len(SAMPLES)
-        mixed[y, x, 3] = (opaque + half) // len(SAMPLES)
+        half = len(SAMPLE_POSITIONS) // 2
+        mixed[y, x, 0] = (red + half) // len(SAMPLE_POSITIONS)
+        mixed[y, x, 1] = (green + half) // len(SAMPLE_POSITIONS)
+        mixed[y, x, 2] = (blue + half) // len(SAMPLE_POSITIONS)
+        mixed[y, x, 3] = (opaque + half) // len(SAMPLE_POSITIONS)
     return mixed

@@ -23,8 +23,8 @@ from .programs import compile_program, write_uniform
 RESOLUTION = 288  # texels in width and height; on a head 1.2 mm each, so shadows fade within 5 mm
 # These lengths are fractions of the scene's radius.
 MAP_REACH = 1.15  # half the map's width; a face moves beyond its rest pose
-TEXEL = 2.0 * MAP_REACH / RESOLUTION  # size of a texel
-OFFSET = 0.003  # distance of look-ups above the surface, 0.45 mm on a head
+TEXEL_SIZE = 2.0 * MAP_REACH / RESOLUTION  # size of a texel
+LOOKUP_OFFSET = 0.003  # distance of look-ups above the surface, 0.45 mm on a head
 STEEP_HEIGHT = 0.999  # y of a light's direction, above which y cannot be the map's up direction
 
 
@@ -48,8 +48,8 @@ class Shadow:
     def set_uniforms(self, program: moderngl.Program, unit: int) -> None:
         """Bind the shadow to a program, through a texture unit."""
         write_uniform(program, "shadow_matrix", self.view_to_light @ _TO_TEXTURE)
-        program["shadow_offset"] = OFFSET * self.radius
-        program["shadow_reach"] = 2.0 * TEXEL * self.radius  # radius of the look-up
+        program["shadow_offset"] = LOOKUP_OFFSET * self.radius
+        program["shadow_reach"] = 2.0 * TEXEL_SIZE * self.radius  # radius of the look-up
         self.depth.use(unit)
         program["shadow_map"] = unit
 

@@ -18,7 +18,15 @@ from .coverage import SKIN_NUMBERS, Drawn, Numbers, part_numbers
 from .frame import Plane, Skin
 from .parts import PlacedBuffers
 from .render_target import Rectangle, RenderTarget, around
-from .sample_kernels import HAIR, SAMPLES, SURFACE, TRIANGLES, find_edges, mix, rasterise
+from .sample_kernels import (
+    HAIR_KIND,
+    SAMPLE_POSITIONS,
+    SURFACE_KIND,
+    TRIANGLE_KIND,
+    find_edges,
+    mix,
+    rasterise,
+)
 from .translucency import NO_CUT, SUNK_DEPTH, in_view
 
 _MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
@@ -47,7 +55,7 @@ class SoftwareMixer:
         area = around(areas)
         colours, surfaces = self.target.read_area(area)
         pixels = find_edges(surfaces, *view.depth_tolerance)
-        depths = np.ones((len(pixels.rows), len(SAMPLES)))
+        depths = np.ones((len(pixels.rows), len(SAMPLE_POSITIONS)))
         seen = np.zeros_like(depths)
         to_area = _clip_to(area, view)
         with np.errstate(all="ignore"):  # triangles with infinite corners are not drawn
@@ -89,7 +97,7 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     if drawn.is_opened:
         cut = np.array(drawn.cut or NO_CUT)
         values[:, 1] = rows[:, :3] @ cut[:3] + cut[3]
-    kind = TRIANGLES if drawn.has_triangles else SURFACE
+    kind = TRIANGLE_KIND if drawn.has_triangles else SURFACE_KIND
     clip = _moved(rows[:, :3], view.world_to_clip)
     return _Surface(clip, values, mesh.triangles.view(np.int32), kind, SKIN_NUMBERS, True)
 
@@ -107,7 +115,7 @@ def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) ->
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
     values = np.zeros((len(positions), 2))
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
-    return _Surface(clip, values, triangles, SURFACE, part_numbers(placed), False)
+    return _Surface(clip, values, triangles, SURFACE_KIND, part_numbers(placed), False)
 
 
 def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
@@ -125,7 +133,7 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
     clip = _moved(positions, view.projection)
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
-    return _Surface(clip, values, triangles, HAIR, part_numbers(placed), False)
+    return _Surface(clip, values, triangles, HAIR_KIND, part_numbers(placed), False)
 
 
 def _moved(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:

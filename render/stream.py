@@ -45,8 +45,8 @@ def _layout(count: int) -> tuple[str, ...]:
 
 
 # Number of columns of a stream -> layout of its vertices in OpenGL.
-LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
-BUMPS = slice(8, 10)  # columns with the amounts of a bump map
+VERTEX_LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
+BUMP_COLUMNS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[TriangleGroup, tuple[int, int]]  # first triangle and count in a buffer of indices
 
 
@@ -103,7 +103,7 @@ class MeshBuffers:
     def __init__(
         self, gl: moderngl.Context, vertex_capacity: int, triangle_capacity: int, columns: int
     ) -> None:
-        if columns not in LAYOUTS:
+        if columns not in VERTEX_LAYOUTS:
             raise ValueError(
                 f"columns is {columns}; it must be 6 (position, normal), 8 (and texture u, v), "
                 "16 (and two amounts of a bump map, gradients of u and v) or 18 (and two of a fade)"
@@ -156,7 +156,7 @@ class MeshBuffers:
     def _part_bumps(self) -> None:
         """Upload the triangles into a second buffer, in which those with bumps come first."""
         parts = self.mesh.triangles
-        amounts = self.mesh.vertices[:, BUMPS]
+        amounts = self.mesh.vertices[:, BUMP_COLUMNS]
         is_shown = (amounts != 0.0).any(axis=1)
         is_bumped = is_shown[parts].any(axis=1)
         count = int(is_bumped.sum())
@@ -211,7 +211,7 @@ class MeshBuffers:
         if array is None:
             array = self.context.vertex_array(
                 program,
-                [(self.vertex_buffer, *LAYOUTS[self.columns])],
+                [(self.vertex_buffer, *VERTEX_LAYOUTS[self.columns])],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # programs need not use all attributes

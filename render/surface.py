@@ -16,7 +16,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .errors import OFFSCREEN, GLError, diagnose
+from .errors import OFFSCREEN_TITLE, GLError, diagnose
 from .render_target import RenderTarget
 
 Image = npt.NDArray[np.uint8]
@@ -219,7 +219,7 @@ def _new_context() -> moderngl.Context:
     try:
         return moderngl.create_context(require=OLDEST_VERSION, **how)
     except Exception as error:
-        raise diagnose(f"{OFFSCREEN} (EGL)" if is_linux else OFFSCREEN, error) from None
+        raise diagnose(f"{OFFSCREEN_TITLE} (EGL)" if is_linux else OFFSCREEN_TITLE, error) from None
 
 
 def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:

@@ -14,7 +14,7 @@ from ..geometry.colour import to_linear
 from .surface import Image, Surface, is_software
 
 _SAMPLED_TEXELS = 10_000  # approximate number of texels for the median of redness
-LIGHTNESS = 0.3, 0.6, 0.1  # weights of red, green and blue in lightness
+LIGHTNESS_WEIGHTS = 0.3, 0.6, 0.1  # weights of red, green and blue in lightness
 # Texture units; 4 is for a window's enlargement.
 _BUMP_UNIT = 5
 _AROUND_UNIT = 6
@@ -89,7 +89,7 @@ class Texture(_Mipmaps):
         width, height = (max(each >> _AROUND_LEVEL, 1) for each in self.size)
         level = min(_AROUND_LEVEL, max(self.size).bit_length() - 1)
         texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
-        means = (np.square(texels[:, :3] / 255.0) @ LIGHTNESS).astype(np.float16)
+        means = (np.square(texels[:, :3] / 255.0) @ LIGHTNESS_WEIGHTS).astype(np.float16)
         around = gl.texture((width, height), 1, means.tobytes(), dtype="f2", alignment=1)
         around.repeat_x = around.repeat_y = False
         return around
@@ -105,7 +105,7 @@ class Texture(_Mipmaps):
         self._texture.use(unit)
         self._around.use(_AROUND_UNIT)
         program["redness"] = self.redness
-        program["lightness_weights"] = LIGHTNESS
+        program["lightness_weights"] = LIGHTNESS_WEIGHTS
         program["occlusion"] = occlusion
 
 

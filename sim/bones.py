@@ -8,7 +8,7 @@ from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from .controls import Controls
 from .face_model import FaceModel
-from .skull import HEAD_CONTROLS, REST
+from .skull import HEAD_CONTROLS, REST_MOTION
 
 
 class Bones:
@@ -38,7 +38,7 @@ class Bones:
         self._gaze = places(names)
         self.jaw = (0.0, 0.0, 0.0)
         self._head_values = [0.0, 0.0, 0.0]
-        self.mandible = self.head = REST  # seen from the cranium, and from the neck
+        self.mandible = self.head = REST_MOTION  # seen from the cranium, and from the neck
         self.turn: Floats64 = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
@@ -55,7 +55,7 @@ class Bones:
         if (head := reached[self._head].tolist()) != self._head_values:
             self._head_values = head
             self.head = self._skull.head_motion(*head)
-            turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
+            turn = np.eye(4) if self.head is REST_MOTION else self.head.matrix(self._space)
             self.turn = read_only(turn)
 
     def gaze(self) -> Floats64:

@@ -89,7 +89,7 @@ class Grip(NamedTuple):
         return cls(stiffness, gap_stiffness, PRESSED_OVERLAP * slid * strength * press)
 
 
-SEALED = Grip.from_seal(1.0, 0.0)
+SEALED_GRIP = Grip.from_seal(1.0, 0.0)
 
 
 def pair_lips(

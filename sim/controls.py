@@ -27,7 +27,7 @@ from ..jit import njit
 from ..schema import quoted
 from .checked import number as finite
 from .checked import numbers
-from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, fraction_of_whole
+from .layers import BOTH_SIDES, NO_LAYERS, SIDE_ENDINGS, Layers, fraction_of_whole
 from .rig import Rig
 
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
@@ -258,7 +258,7 @@ def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[fl
     """Return the limits of each control; a control for both sides has the limits of one side."""
     limits = {control.name: (control.low, control.high) for control in controls}
     for name in layers.weights:
-        sides = [limits[name + side] for side in SIDES if name + side in limits]
+        sides = [limits[name + side] for side in SIDE_ENDINGS if name + side in limits]
         of_both = sides and name in layers.groups.get(BOTH_SIDES, ())
         limits[name] = sides[0] if of_both else (0.0, 1.0)
     return limits

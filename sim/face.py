@@ -30,7 +30,7 @@ from ..schema import quoted
 from . import checked
 from .anatomy import Anatomy
 from .bones import Bones
-from .contact import SEALED
+from .contact import SEALED_GRIP
 from .controls import Controls, MuscleDrive
 from .coordinates import to_posed_head
 from .face_model import FaceModel
@@ -65,7 +65,7 @@ class Simulation:
         surface = model.surface
         self._state = state or State.at_rest(surface, len(model.muscles.bundle.muscle))
         self._model = model
-        self.grip = SEALED
+        self.grip = SEALED_GRIP
         self._positions = model.vertices.copy()
         self.positions = read_only(self._positions)
         self.rest_positions = read_only(model.vertices.copy())

@@ -27,7 +27,7 @@ from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles
 from .polylines import polyline_distance
 from .skin_model import SkinModel
-from .substep import LONGEST_SUBSTEP, ROUNDING
+from .substep import LONGEST_SUBSTEP, STEP_ROUNDING
 from .surface import SkinSurface
 from .teeth import watch_teeth
 from .tissue import EdgeSprings, TissueSprings, masses_for_step
@@ -39,7 +39,7 @@ NECK_LENGTH = 45.0  # mm below the chin over which the head's turn fades, or the
 MEETING_FRACTION = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 WHOLE_LIP_REACH = 7.0  # mm from the mouth line up to which skin follows fully
 LIP_END_REACH = 32.0  # mm from the mouth line beyond which skin stays
-STEP_MARGIN = 1.0 + ROUNDING  # factor by which a substep may exceed LONGEST_SUBSTEP
+STEP_MARGIN = 1.0 + STEP_ROUNDING  # factor by which a substep may exceed LONGEST_SUBSTEP
 
 
 @dataclass(frozen=True, eq=False)

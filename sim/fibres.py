@@ -4,8 +4,8 @@ A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Skin is attached
 length t in 0..1. At contraction c, the point at t moves to where the point at t (1 - c) was: skin
 slides along the fibre towards the origin. A muscle whose origin is the scalp (frontalis)
 is fixed at t = f instead, and both ends slide towards it: t moves to f + (t - f)(1 - c). A table
-holds the displacements at SAMPLES points along every fibre; each tick rewrites it. The skin, and
-muscles that lie on the fibre, read the table by linear interpolation.
+holds the displacements at SAMPLE_COUNT points along every fibre; each tick rewrites it. The skin,
+and muscles that lie on the fibre, read the table by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
@@ -33,7 +33,7 @@ from .skull import RigidMotion
 from .surface import SkinSurface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
-SAMPLES = 17  # places along a fibre where its displacement is known, to 0.2 mm
+SAMPLE_COUNT = 17  # places along a fibre where its displacement is known, to 0.2 mm
 WRAP_NEIGHBOURS = 10  # vertices that give the place of the skin (chosen)
 LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
 
@@ -102,7 +102,7 @@ class Stack(NamedTuple):
 class LineMotion(NamedTuple):
     """Displacements of all lines [mm], rewritten each tick."""
 
-    contracted: Floats64  # (B, SAMPLES, 3) displacement of each active line by its contraction
+    contracted: Floats64  # (B, SAMPLE_COUNT, 3) displacement of each active line by its contraction
     carried: Floats64  # (B, FIBRE_POINTS, 3) displacement of its points by the muscles beneath
     is_carried: Flags  # (B,) whether any muscle beneath moves
 
@@ -110,7 +110,7 @@ class LineMotion(NamedTuple):
     def allocate(cls, line_count: int) -> LineMotion:
         """Allocate the displacements of this many lines."""
         return cls(
-            np.zeros((line_count, SAMPLES, 3)),
+            np.zeros((line_count, SAMPLE_COUNT, 3)),
             np.zeros((line_count, FIBRE_POINTS, 3)),
             np.zeros(line_count, dtype=np.bool_),
         )
@@ -322,7 +322,10 @@ def follow_bones(
 
 @njit
 def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats64) -> None:
-    """Fill `displacement` (SAMPLES, 3) along a fibre that loses a fraction `lost` of its length."""
+    """Fill `displacement` along a fibre that loses a fraction `lost` of its length.
+
+    displacement: at the places of the table, (SAMPLE_COUNT, 3).
+    """
     samples = len(displacement)
     count = len(moved)
     arc = np.empty(count)

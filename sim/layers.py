@@ -60,13 +60,15 @@ from ..schema import OneOf, Record, Rest, Within, question, read
 from .checked import several
 
 BOTH_SIDES = "Both sides"  # title of the layer in every face with paired muscles
-SIDES = ("_left", "_right")
-ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the names of a pair's sides
-    {True: SIDES, "Left Right": ("Left", "Right")}
+SIDE_ENDINGS = ("_left", "_right")
+# Endings of the names of a pair's sides, by the value of `pair`.
+PAIR_ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(
+    {True: SIDE_ENDINGS, "Left Right": ("Left", "Right")}
 )
 GREATEST_WEIGHT = 2.0  # a larger weight is taken for a typing error
 Weight = Annotated[float, Within(-GREATEST_WEIGHT, GREATEST_WEIGHT)]
 Floor = Annotated[float, Within(0.0, GREATEST_WEIGHT)]
+Pair = Annotated[bool | str, OneOf((False, *PAIR_ENDINGS), 'true, false or "Left Right"')]
 LEAST_WHOLE = 0.08  # value of the control in `share_of` below which the weight fades
 
 
@@ -133,7 +135,7 @@ class _Row(Record):
 
     entries: Rest[Weight]
     action: str = ""
-    pair: Annotated[bool | str, OneOf((False, *ENDINGS), 'true, false or "Left Right"')] = False
+    pair: Pair = False
     mirror: str | None = None
     share_of: str | None = None
     at_least: Mapping[str, Floor] = field(default_factory=dict)
@@ -157,7 +159,7 @@ class _Reader:
         """Add the layer of names without side; each moves both sides, or the only side there is."""
         sides: dict[str, list[Floats64]] = {}
         for name, weight in self.weights.items():
-            if name.endswith(SIDES):
+            if name.endswith(SIDE_ENDINGS):
                 sides.setdefault(name.rpartition("_")[0], []).append(weight)
         names = tuple(name for name in sides if name not in self.weights)
         for name in names:
@@ -169,7 +171,7 @@ class _Reader:
     def add(self, where: str, name: str, row: _Row, below: Mapping[str, Floats64]) -> list[str]:
         """Read one row, and return the names of the controls that it makes."""
         self._check(where, name, row, below)
-        sides = zip(ENDINGS[row.pair], SIDES, strict=True) if row.pair else [("", "")]
+        sides = zip(PAIR_ENDINGS[row.pair], SIDE_ENDINGS, strict=True) if row.pair else [("", "")]
         made = {name + ending: self._sums(row, side, below) for ending, side in sides}
         if row.pair is True:
             weights, floors = zip(*made.values(), strict=True)
@@ -200,11 +202,11 @@ class _Reader:
             allowed = "another name, in a row that is not a pair"
             raise ValueError(f"{where}, 'mirror': was '{row.mirror}', must be {allowed}")
         if row.pair:
-            for side in (*SIDES, *ENDINGS["Left Right"]):
+            for side in (*SIDE_ENDINGS, *PAIR_ENDINGS["Left Right"]):
                 if name.endswith(side):
                     raise ValueError(f"{where}: a pair adds the sides; omit '{side}'")
             for control in (*row.entries, *row.at_least):
-                if control.endswith(SIDES):
+                if control.endswith(SIDE_ENDINGS):
                     raise ValueError(f"{where}: in a pair omit the side of '{control}'")
         self._check_entries(where, row, below)
 
@@ -240,7 +242,7 @@ class _Reader:
 
 def _exchanged(entries: Mapping[str, float]) -> dict[str, float]:
     """Entries of a row with left and right exchanged."""
-    left, right = SIDES
+    left, right = SIDE_ENDINGS
     names = {name: name.removesuffix(left) + right for name in entries if name.endswith(left)}
     names |= {name: name.removesuffix(right) + left for name in entries if name.endswith(right)}
     return {names.get(name, name): value for name, value in entries.items()}

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
 from .landmarks import smoothstep
-from .lid_edges import COLUMNS, LidAxes
+from .lid_edges import COLUMN_COUNT, LidAxes
 from .surface import SkinSurface
 
 
@@ -30,7 +30,8 @@ def turn_above(
     It is NaN for vertices without a path along the skin to the edge.
 
     edge: vertices of the front edge. side: 1 on the upper lid .. -1 on the lower lid, (V,).
-    edge_angles: angles of the edge of the open and of the shut lid by column [rad], (COLUMNS,).
+    edge_angles: by column, angles of the edge of the open and of the shut lid [rad], shape
+        (COLUMN_COUNT,) each.
     """
     distance = surface.distances_from(edge.astype(np.int64))
     column = axes.column(surface.positions)
@@ -38,7 +39,7 @@ def turn_above(
     faded = 1.0 + (distance / np.interp(column, *_HALF_DISTANCE)) ** steepness
     fraction = np.interp(column, *_FAR_FRACTION) / faded
     fraction *= smoothstep(side)  # skin beside the corners is held
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
     height = axes.angle(surface.positions) - np.interp(column, where, edge_angles[1])
     most = np.interp(column, *_MOST_MOTION) * np.maximum(height, 0.0)
     edge_turn = np.maximum(edge_angles[0] - edge_angles[1], 0.0)

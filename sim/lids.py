@@ -32,12 +32,12 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, smoothstep
-from .lid_edges import COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
+from .lid_edges import COLUMN_COUNT, LidAxes, OneLid, front_edges, one_lid, side_with_edges
 from .lid_fold import turn_above
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
 from .lip_lid_sides import lid_side
-from .rig import LIDS, Eyes, LidMuscle, Rig
+from .rig import LID_ACTIONS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
 from .state import State
 from .surface import SkinSurface
@@ -48,7 +48,7 @@ class Lids(NamedTuple):
 
     vertices: LidVertices
     hold: Floats64  # (L,) extra stiffness of the tarsal plate
-    muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
+    muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LID_ACTIONS), travel
 
     def drive(self, activation: Floats64) -> Floats64:
         """Closing and raising of lids, (eyes, 3): upper closes, lower rises, upper rises."""
@@ -168,7 +168,7 @@ def _lift(lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool) ->
     both: whether the lower lid is lifted, too.
     """
     state = State.at_rest(surface)
-    closed = np.zeros((1, len(LIDS)))
+    closed = np.zeros((1, len(LID_ACTIONS)))
     closed[:, 0] = 1.0
     turn_lids(state, surface.positions, lids, closed, np.zeros((1, 2)))
     moves = np.zeros(surface.vertex_count)
@@ -219,7 +219,7 @@ def _one_eye(
     edges = front_edges(surface, axes, outline)
     side = side_with_edges(lid_side(surface, landmarks, ball.side), *edges)
     upper, lower = _both_lids(eyes, surface, axes, edges, side)
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
     least_opening = 0.05  # rad: closed lids do not overlap where an eye opens less
@@ -267,7 +267,7 @@ def _one_eye(
 def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
     """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
     proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
     sunk: Floats64 = np.interp(column, where, upper.depth - lower.depth) - proud
     return sunk
@@ -283,7 +283,7 @@ def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
     beyond = np.maximum(np.abs(column - 0.5) - 0.5, 0.0)
     slide_ends = (0.1, 1.7)  # factors of the slide at the outer and the inner corner
     ends: Floats64 = np.interp(column, (0.0, 1.0), slide_ends)
-    opened = np.interp(column, np.linspace(0.0, 1.0, COLUMNS), full)
+    opened = np.interp(column, np.linspace(0.0, 1.0, COLUMN_COUNT), full)
     return near * opened * ends * smoothstep(1.0 - beyond / slide_beyond)
 
 
@@ -306,7 +306,7 @@ def _both_lids(
 def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
     """The margin of a lid itself, up to its front edge, shape (V,)."""
     edge_turn = 1e-3  # rad
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
     within: Flags = lid.near & (sign * (angle - np.interp(column, where, lid.front)) < edge_turn)
     return within
 
@@ -324,7 +324,7 @@ def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
 
     Lids that meet below such a corner leave a notch beside it. upper: front edge of the upper lid.
     """
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
     corner_slope = 0.5  # [rad] over the width of the opening
     raised = np.maximum(seam[0] - corner_slope * where, seam[-1] - corner_slope * (1.0 - where))
     joined: Floats64 = np.maximum(seam, np.minimum(raised, upper))
@@ -335,7 +335,7 @@ def _smoothed(height: Floats64) -> Floats64:
     """Opening by column, smoothed at the ends so that skin off the margin does not crease."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
-    return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMNS])
+    return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMN_COUNT])
 
 
 def _lid_muscles(
@@ -347,5 +347,5 @@ def _lid_muscles(
         if isinstance(muscle, LidMuscle):
             for eye, ball in enumerate(eyeballs):
                 name = f"{muscle.name}_{ball.side.value}" if muscle.pair else muscle.name
-                found.append((names.index(name), eye, LIDS.index(muscle.lid), muscle.travel))
+                found.append((names.index(name), eye, LID_ACTIONS.index(muscle.lid), muscle.travel))
     return tuple(found)

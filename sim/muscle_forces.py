@@ -30,7 +30,7 @@ from ..jit import njit
 from .fibres import (
     FIBRE_POINTS,
     LEAST_ARC,
-    SAMPLES,
+    SAMPLE_COUNT,
     FibreBundle,
     LineMotion,
     Stack,
@@ -243,7 +243,7 @@ def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Float
     return [
         (
             placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
-            line.skin.arc * (SAMPLES - 1),
+            line.skin.arc * (SAMPLE_COUNT - 1),
         )
         for n in order
         for line in placed[n].lines

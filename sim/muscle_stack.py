@@ -28,7 +28,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
 from ..geometry.polylines import arc_lengths
-from .fibres import FIBRE_POINTS, SAMPLES, AttachedPoints, Stack, over_skin
+from .fibres import FIBRE_POINTS, SAMPLE_COUNT, AttachedPoints, Stack, over_skin
 from .muscles import Line, PlacedMuscle, attach
 from .surface import SkinSurface
 
@@ -107,7 +107,7 @@ def _carried(
     return _Carried(
         at,
         first + strongest,
-        np.array([hold.arc for hold in holds])[each] * (SAMPLES - 1),
+        np.array([hold.arc for hold in holds])[each] * (SAMPLE_COUNT - 1),
         np.array(along)[each],
         np.array([hold.weight for hold in holds])[each],
         np.array([hold.steady for hold in holds])[each],

@@ -33,8 +33,8 @@ from .fibres import (
 )
 from .landmarks import Side
 from .polylines import arcs_along
-from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
-from .skull import LATERAL, UP, rotation
+from .rig import MOUTH_POINT, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
+from .skull import LATERAL_AXIS, UP_AXIS, rotation
 from .surface import SkinSurface
 
 
@@ -192,9 +192,11 @@ def attach_to_ring(
     found = Attachment(weight, np.zeros(count), np.zeros((count, 3)))
     found.steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
     x = held.positions
-    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are equally near
+    if (
+        muscle.shape or muscle.centre
+    ) == MOUTH_POINT:  # between the lips both halves are equally near
         to_line = np.where(held.lip_side > 0.0, up, down) * np.maximum(1.0 - rho[on], 0.0)
-        x = x + (held.lip_side * to_line)[:, None] * UP
+        x = x + (held.lip_side * to_line)[:, None] * UP_AXIS
     found.arc[on] = arcs_along(points, x)
     return found
 
@@ -263,7 +265,7 @@ def _ring_pull(
         pull[:, 1] += _round_mouth(muscle, x, landmarks)
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     roll, yaw = np.radians(muscle.turn_deg)
-    turn = rotation(UP, side.sign * yaw) @ rotation(LATERAL, roll)
+    turn = rotation(UP_AXIS, side.sign * yaw) @ rotation(LATERAL_AXIS, roll)
     pull += (x - centre) @ (turn.T - np.eye(3))
     seam = landmarks[[62, 66], 1].mean()
     mouth_round = 1.08  # half widths of the mouth at which flare and parting end

@@ -49,7 +49,7 @@ import numpy.typing as npt
 from ..geometry.arrays import Flags, Floats64
 from .face import Simulation
 
-STEP = 1.0 / 60.0  # [s] of a clone's steps
+STEP_LENGTH = 1.0 / 60.0  # [s] of a clone's steps
 Names = tuple[str, ...]
 
 
@@ -228,7 +228,7 @@ class Pull:
         for names in candidates:
             self._probe.copy_from(self._base)
             self._probe.jump(self._shifted(names, 1.0))
-            self._probe.step(STEP)
+            self._probe.step(STEP_LENGTH)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         most_candidates = 16  # number of examined controls: those that move the finger's skin most
         # Two equal controls are both included.
@@ -315,7 +315,7 @@ def _rest(clone: Simulation, values: dict[str, float]) -> None:
     clone.jump(values)
     steps_to_rest = 6  # of a clone after a small change; less than a twentieth of it is left
     for _ in range(steps_to_rest):
-        clone.step(STEP)
+        clone.step(STEP_LENGTH)
 
 
 class _Lasso(NamedTuple):

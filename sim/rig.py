@@ -43,9 +43,9 @@ from ..schema import (
 )
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 
-LIDS = ("upper_close", "lower_raise", "upper_raise")  # actions of lid muscles
+LID_ACTIONS = ("upper_close", "lower_raise", "upper_raise")  # actions of lid muscles
 
-MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
+MOUTH_POINT = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
@@ -217,7 +217,7 @@ class LinearMuscle(Muscle):
 class RingMuscle(Muscle):
     """A sphincter or a part of one: skin on an elliptic ring moves to a centre, and outward."""
 
-    centre: Point = MOUTH
+    centre: Point = MOUTH_POINT
     shape: Point | None = None  # middle of the ellipse; None: `centre`
     radii: Annotated[Triple, Within(1.0, 100.0)] = (20.0, 10.0, 10.0)
     edge: Annotated[Pair, Within(0.05, 10.0)] = (0.7, 1.0)  # falloff outside, inside
@@ -237,11 +237,15 @@ class RingMuscle(Muscle):
 class LidMuscle(Muscle):
     """A muscle that turns an eyelid over the eyeball."""
 
-    lid: Annotated[str, OneOf(LIDS)] = "upper_close"
+    lid: Annotated[str, OneOf(LID_ACTIONS)] = "upper_close"
     travel: Annotated[float, Within(0.0, 2.0)] = 1.0  # x the lid aperture at full activation
 
 
-KINDS: dict[str, type[Muscle]] = {"linear": LinearMuscle, "ring": RingMuscle, "lid": LidMuscle}
+MUSCLE_KINDS: dict[str, type[Muscle]] = {
+    "linear": LinearMuscle,
+    "ring": RingMuscle,
+    "lid": LidMuscle,
+}
 
 
 def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
@@ -295,7 +299,7 @@ class Rig(Record):
     muscles: Annotated[
         tuple[Muscle, ...],
         called("muscle"),
-        MadeFrom(dict[str, Annotated[Muscle, Kinds(KINDS)]], _muscles),
+        MadeFrom(dict[str, Annotated[Muscle, Kinds(MUSCLE_KINDS)]], _muscles),
     ] = ()
     format: Literal[1] = 1
 

@@ -29,8 +29,8 @@ from .surface import SkinSurface
 
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
-LATERAL = (1.0, 0.0, 0.0)
-UP = (0.0, 1.0, 0.0)
+LATERAL_AXIS = (1.0, 0.0, 0.0)
+UP_AXIS = (0.0, 1.0, 0.0)
 
 Triple = tuple[float, float, float]
 
@@ -67,7 +67,7 @@ class RigidMotion(NamedTuple):
         return result
 
 
-REST = RigidMotion.frozen(np.eye(3), np.zeros(3))
+REST_MOTION = RigidMotion.frozen(np.eye(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class Skull:
     def head_motion(self, pitch: float, yaw: float, roll: float) -> RigidMotion:
         """Motion of the head by head_pitch (up), head_yaw (left), head_roll (to the left)."""
         if pitch == yaw == roll == 0.0:
-            return REST
+            return REST_MOTION
         head = self.head
         angles = (
             math.radians(head.yaw_deg) * yaw,
@@ -124,8 +124,8 @@ class Skull:
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """Motion of an eyeball that looks to the subject's left (+1) and up (+1)."""
         most = math.radians(self.eyes.gaze_deg) * eyeball.gaze_factor
-        yaw = rotation(UP, most * horizontal)
-        pitch = rotation(LATERAL, -most * vertical)
+        yaw = rotation(UP_AXIS, most * horizontal)
+        pitch = rotation(LATERAL_AXIS, -most * vertical)
         return RigidMotion.about(eyeball.centre, yaw @ pitch)
 
 
@@ -184,7 +184,7 @@ def turn_head(condyles: Floats64, joint: Triple, angles: Triple) -> tuple[Floats
     condyles: (2, 3) [mm]; joint: offset of the joint from their midpoint [mm]; angles: to the left,
     down, and to the right shoulder [rad].
     """
-    turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
+    turn = times(rotation(UP_AXIS, angles[0]), rotation(LATERAL_AXIS, angles[1]))
     forward = (0.0, 0.0, 1.0)
     turn = times(turn, rotation(forward, angles[2]))
     pivot = (condyles[0] + condyles[1]) / 2.0
@@ -211,7 +211,7 @@ def move_mandible(
     pivot = (right + left) / 2.0
     shift = pivot - turned(opened, pivot)
     # For a move to the left, the left condyle stays and turns, and the right one comes forward.
-    aside = rotation(UP, angles[1] * values[2])
+    aside = rotation(UP_AXIS, angles[1] * values[2])
     pivot = left if values[2] > 0.0 else right
     turn = times(aside, opened)
     shift = pivot + turned(aside, shift - pivot)

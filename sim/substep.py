@@ -38,7 +38,7 @@ from .tissue import EdgeSprings, TissueSprings
 LONGEST_FRAME = 1.0 / 20.0  # s, the longest allowed `dt`
 # s: all skin is 24 % heavier than its own mass; 1/360 s gives 14 % and costs a fifth more
 LONGEST_SUBSTEP = 1.0 / 300.0
-ROUNDING = 0.02  # parts: a caller's 0.0167 for 1/60 s is still one tick, not two
+STEP_ROUNDING = 0.02  # parts: a caller's 0.0167 for 1/60 s is still one tick, not two
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 
 
@@ -55,7 +55,7 @@ def substeps_in(tick: float) -> int:
 
 def parts(whole: float, longest: float) -> int:
     """Return the number of equal parts of a time [s], none longer than `longest`."""
-    return max(1, math.ceil(whole / longest - ROUNDING))
+    return max(1, math.ceil(whole / longest - STEP_ROUNDING))
 
 
 @njit

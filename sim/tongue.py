@@ -29,7 +29,7 @@ from .coordinates import FaceSpace
 from .landmarks import smoothstep
 from .skull import RigidMotion
 
-SAMPLES = 65  # number of points of the spine
+SPINE_POINT_COUNT = 65  # number of points of the spine
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class Tongue:
 
     rest: Floats64  # (T, 3)
     along: Floats64  # (T,) place along the spine: 0 the tip .. 1 the root
-    spine: Floats64  # (SAMPLES, 2) forward and up, from the tip
+    spine: Floats64  # (SPINE_POINT_COUNT, 2) forward and up, from the tip
     off: Floats64  # (T,) up from the spine
-    half: Floats64  # (SAMPLES,) half of the height
+    half: Floats64  # (SPINE_POINT_COUNT,) half of the height
     lower_edge: Floats64  # (3,) of the lower incisors
     upper_edge: Floats64  # (3,) of the upper incisors, seen from the cranium
     lips: Integers64  # vertex indices of the landmarks LIPS
@@ -66,7 +66,7 @@ class Tongue:
         tip_up = upper_edge[[2, 1]] + palate - self.spine[0]
         highest_rise = 24.0  # mm that the tip rises
         tip_up *= min(1.0, highest_rise / float(np.linalg.norm(tip_up)))
-        place = np.linspace(0.0, 1.0, SAMPLES)
+        place = np.linspace(0.0, 1.0, SPINE_POINT_COUNT)
         front_share = 0.75  # share of the spine that rises with the tip
         falloff = np.maximum(1.0 - place / front_share, 0.0)[:, None] ** 2
         spine += up * (1.0 - risen) * falloff * tip_up
@@ -123,7 +123,7 @@ class Tongue:
         return float(np.clip(free_share, 0.0, 1.0)), float(thickness)
 
     def _on_path(self, out: float, lips: Floats64, thickness: float) -> Floats64:
-        """The spine along the path out of the mouth, shape (SAMPLES, 2)."""
+        """The spine along the path out of the mouth, shape (SPINE_POINT_COUNT, 2)."""
         _, middle, low, *_ = lips
         clearance = 0.6  # mm above teeth and lip
         above = 0.5 * thickness + clearance
@@ -136,7 +136,7 @@ class Tongue:
         tip_drop = 9.0  # mm from the edge of the lip down to the tip at the end
         path = np.array([
             self.spine[-1] + (root_forward, 0.0),
-            self.spine[SAMPLES // 2] + body_rise,
+            self.spine[SPINE_POINT_COUNT // 2] + body_rise,
             self.lower_edge[[2, 1]] + (-self.PATH_SETBACK, above),
             (middle[2] - 1.0, over_lip),
             (front + above + overhang, low[1] - tip_drop),
@@ -144,7 +144,7 @@ class Tongue:
         lengths = arc_lengths(path)
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
         # The root is stretched, and the tip keeps its shape.
-        place = np.linspace(0.0, 1.0, SAMPLES)
+        place = np.linspace(0.0, 1.0, SPINE_POINT_COUNT)
         rest = _length(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
         on_path: Floats64 = scipy.interpolate.PchipInterpolator(lengths, path)(way)
@@ -172,7 +172,7 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     if len(rest) < slice_count or tip - root < least_length:
         return None
     along = (tip - rest[:, 2]) / (tip - root)
-    place = np.linspace(0.0, 1.0, SAMPLES)
+    place = np.linspace(0.0, 1.0, SPINE_POINT_COUNT)
     degree = 4  # of the polynomial that gives the spine at rest
     middle = np.polynomial.Polynomial.fit(along, rest[:, 1], degree)
     off = rest[:, 1] - middle(along)

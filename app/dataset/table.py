@@ -18,8 +18,8 @@ from risorius.assets.identities import (
     DARKEST_TONE,
     FRAMES,
     LIGHTEST_TONE,
-    MASKS,
-    SHIRTS,
+    MASK_COLOURS,
+    SHIRT_COLOURS,
     Population,
 )
 from risorius.assets.identities.hair import CUTS
@@ -195,10 +195,10 @@ class SampleTable(Record):
     irises: Annotated[Weights, _drawn_from(IRIS_FREQUENCIES)]
     cuts_of_women: Annotated[Weights, _drawn_from(CUTS)]
     cuts_of_men: Annotated[Weights, _drawn_from(CUTS)]
-    shirts: Annotated[Weights, _drawn_from(SHIRTS)]
+    shirts: Annotated[Weights, _drawn_from(SHIRT_COLOURS)]
     collars: Annotated[Weights, _drawn_from(COLLARS)]
     glasses: Annotated[Weights, _drawn_from((NOTHING_WORN, *FRAMES))]
-    masks: Annotated[Weights, _drawn_from((NOTHING_WORN, *MASKS))]
+    masks: Annotated[Weights, _drawn_from((NOTHING_WORN, *MASK_COLOURS))]
     lights: Annotated[Weights, _drawn_from(LIGHTS)]
     degradations: Degradations
 

@@ -18,7 +18,7 @@ import scipy
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.sim.controls import Controls
-from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, fraction_of_whole
+from risorius.sim.layers import LEAST_WHOLE, SIDE_ENDINGS, Layers, fraction_of_whole
 
 from ..errors import UserError
 from ..scenes import Scene
@@ -66,7 +66,7 @@ def sided(scene: Scene, layer: str) -> tuple[str, ...]:
     names = _muscles_of(scene, layer).layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; use the built-in head")
-    return tuple(name for name in names if name + SIDES[0] not in names)
+    return tuple(name for name in names if name + SIDE_ENDINGS[0] not in names)
 
 
 def _muscles_of(scene: Scene, layer: str) -> Controls:
@@ -97,7 +97,10 @@ def _set_values(
 
 def _without_side(name: str) -> str:
     """Return AU12 for AU12_left, and "" for a name without a side."""
-    return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
+    for ending in SIDE_ENDINGS:
+        if name.endswith(ending):
+            return name.removesuffix(ending)
+    return ""
 
 
 def _sums(values: Floats64, weights: Floats64, floors: Floats64) -> Floats64:

@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
-from risorius.assets.identities.mask import SHAPE
+from risorius.assets.identities.mask import MASK_SHAPE
 from risorius.assets.model import Part
 from risorius.geometry.arrays import Floats64
 from risorius.geometry.normals import vertex_normals
@@ -23,10 +23,10 @@ class Mask(FacePart):
         assert part.mandible_shares is not None
         self._shares = part.mandible_shares
         self._rest = part.vertices.astype(np.float64)
-        count = SHAPE[0] * SHAPE[1]
+        count = MASK_SHAPE[0] * MASK_SHAPE[1]
         sheet = self._rest[:count]
         # Smooth normals ignore the pleats.
-        normals = vertex_normals(self._rest, part.faces)[:count].reshape(*SHAPE, 3)
+        normals = vertex_normals(self._rest, part.faces)[:count].reshape(*MASK_SHAPE, 3)
         smooth = scipy.ndimage.gaussian_filter(normals, (4.0, 4.0, 0.0), mode="nearest")
         smooth /= np.linalg.norm(smooth, axis=-1, keepdims=True)
         self._outward = smooth.reshape(-1, 3)
@@ -43,7 +43,7 @@ class Mask(FacePart):
         clearance = 2.0  # [mm]
         heights = self._heights(now.skin_on("cranium"), moved[: len(self._outward)])
         pushed = np.minimum(heights + clearance, heights - self._resting_heights).max(axis=1)
-        least = np.maximum(pushed, 0.0).reshape(SHAPE)
+        least = np.maximum(pushed, 0.0).reshape(MASK_SHAPE)
         push = least
         for _ in range(40):  # the sheet forms a tent over pushed places
             around = np.pad(push, 1, mode="edge")

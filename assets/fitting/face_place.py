@@ -10,10 +10,11 @@ from ...geometry.arrays import Floats64
 from ..errors import AssetError
 from ..loading import load
 from ..model import Head
-from .landmark_file import COUNT, groups_in_disorder
+from .landmark_file import LANDMARK_COUNT, groups_in_disorder
 from .warp import Similarity
 
-ORIENTING = slice(17, COUNT)  # without the jaw line, on which annotators differ most
+# Without the jaw line, on which annotators differ most.
+ORIENTING_LANDMARKS = slice(17, LANDMARK_COUNT)
 
 
 def placed(points: Floats64, known: Head) -> Similarity:
@@ -22,27 +23,27 @@ def placed(points: Floats64, known: Head) -> Similarity:
     Raises AssetError if the landmarks form no face, are mirrored, or are in a wrong order.
     """
     template = known.vertices[known.landmarks]
-    extent = np.ptp(points[ORIENTING], axis=0).max()
+    extent = np.ptp(points[ORIENTING_LANDMARKS], axis=0).max()
     least_size = 1e-9  # [unit of the mesh]; squares of less would lose precision
     if extent < least_size:
         raise AssetError(
             f"the landmarks lie within {extent:.3g} units; allowed are {least_size:g} and more: "
             "give 68 different ones, in metres or millimetres"
         )
-    similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
+    similarity = Similarity.between(points[ORIENTING_LANDMARKS], template[ORIENTING_LANDMARKS])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
     disordered = groups_in_disorder(similarity.points(points), template)
     farthest_from_a_face = 14.0  # [mm]; greatest mean distance from the built-in landmarks
-    is_far = off[ORIENTING].mean() > farthest_from_a_face
+    is_far = off[ORIENTING_LANDMARKS].mean() > farthest_from_a_face
     most_disordered = 3  # groups; if more are in a wrong order, the landmarks form no face
     if disordered and not (is_far and len(disordered) > most_disordered):
         _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
     if is_far:
         raise AssetError(
-            f"the landmarks form no face: they are {off[ORIENTING].mean():.0f} mm off on average, "
-            f"and landmark {off.argmax()} by {off.max():.0f} mm; give the 68 iBug points in their "
-            "order"
+            f"the landmarks form no face: they are {off[ORIENTING_LANDMARKS].mean():.0f} mm off on "
+            f"average, and landmark {off.argmax()} by {off.max():.0f} mm; give the 68 iBug points "
+            "in their order"
         )
     if similarity.is_mirrored:
         raise AssetError(

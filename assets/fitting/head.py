@@ -34,11 +34,11 @@ from ..meshes import Mesh, read_mesh
 from ..model import Eye, FineShape, Head, Part, Wrinkles
 from ..user_files import named
 from . import simplifying
-from .face_place import ORIENTING, is_face, placed
+from .face_place import ORIENTING_LANDMARKS, is_face, placed
 from .fillings import filling_of
 from .jaw_place import jaw_axis_of, with_human_opening
 from .landmark_file import (
-    COUNT,
+    LANDMARK_COUNT,
     MisfitError,
     UnfinishedError,
     check_lips,
@@ -180,7 +180,7 @@ def _fit_known_topology(mesh: Mesh, path: Path) -> FittedHead:
         """Return the known landmarks; inner lips that were parted get vertices of their own lip."""
         indices = known.landmarks
         nearest = nearest_vertices(mesh.vertices[indices], parted.vertices, parted.faces)
-        inner_lips = np.arange(COUNT) >= 60
+        inner_lips = np.arange(LANDMARK_COUNT) >= 60
         return np.where(inner_lips, nearest, indices), None
 
     note = f"its vertices are those of {known.name}, whose landmarks are known"
@@ -392,6 +392,6 @@ def _check_size(skin: SkinPiece) -> None:
 def _facing_outward(skin: SkinPiece) -> SkinPiece:
     """Turn the triangles of a skin, if necessary, to run counter-clockwise seen from outside."""
     normals = vertex_normals(skin.vertices, skin.faces)
-    if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
+    if normals[skin.landmarks[ORIENTING_LANDMARKS], 2].mean() > 0.0:
         return skin
     return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]), is_turned=True)

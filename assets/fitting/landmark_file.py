@@ -33,15 +33,15 @@ from ...geometry.arrays import Floats64, Integers32
 from ...geometry.mesh_graph import path_lengths, pieces_of
 from ...schema import Within, parsed_json, read
 from ..errors import AssetError
-from ..meshes import FARTHEST, Mesh
+from ..meshes import FARTHEST_COORDINATE, Mesh
 from ..user_files import named, read_file
 from .mesh_validation import SkinPiece, with_seams_joined
 from .warp import nearest_on
 
-COUNT = 68
+LANDMARK_COUNT = 68
 LIST_KEY = "landmarks"  # key of the landmarks, if the file has several lists
 GUESSED_KEY = "guessed"
-Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
+Point = Annotated[tuple[float, float, float], Within(-FARTHEST_COORDINATE, FARTHEST_COORDINATE)]
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
@@ -59,8 +59,8 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
         found = _all_in(_document(path))
         if None in found:
             raise UnfinishedError(
-                f"landmark {found.index(None)} is null: {found.count(None)} of {COUNT} are not "
-                "marked yet; mark them in the window: `risorius view --head MESH`"
+                f"landmark {found.index(None)} is null: {found.count(None)} of {LANDMARK_COUNT} "
+                "are not marked yet; mark them in the window: `risorius view --head MESH`"
             )
         if _are_indices(found):
             indices = _indices(found, len(mesh.vertices))
@@ -102,7 +102,7 @@ def landmarks_text(points: Mapping[int, Sequence[float]], guessed: Iterable[int]
 
     points: number of the landmark -> point. guessed: numbers of guessed landmarks.
     """
-    rows = ",\n    ".join(json.dumps(points.get(number)) for number in range(COUNT))
+    rows = ",\n    ".join(json.dumps(points.get(number)) for number in range(LANDMARK_COUNT))
     return f'{{\n  "{LIST_KEY}": [\n    {rows}\n  ],\n  "{GUESSED_KEY}": {sorted(guessed)}\n}}\n'
 
 
@@ -120,7 +120,7 @@ def _document(path: Path) -> Any:
         return parsed_json(content)  # in UTF-8, 16 or 32, with a byte order mark or without
     except ValueError as error:
         raise AssetError(
-            f'{error}; it must be {{"{LIST_KEY}": [...]}} with {COUNT} entries'
+            f'{error}; it must be {{"{LIST_KEY}": [...]}} with {LANDMARK_COUNT} entries'
         ) from None
 
 
@@ -130,12 +130,12 @@ def _all_in(document: Any) -> list[Any]:
     if isinstance(document, dict):
         entries = [document[LIST_KEY]] if LIST_KEY in document else list(document.values())
     lists = [list[Any](each) for each in entries if isinstance(each, list)]
-    lists.sort(key=lambda each: len(each) != COUNT)
-    if not lists or len(lists[0]) != COUNT:
+    lists.sort(key=lambda each: len(each) != LANDMARK_COUNT)
+    if not lists or len(lists[0]) != LANDMARK_COUNT:
         has = f"{len(lists[0])} landmarks" if lists else "holds no list"
         raise AssetError(
-            f'{has}; it must be {{"{LIST_KEY}": [...]}} with the {COUNT} iBug points in their '
-            "order, vertex indices or points [x, y, z]"
+            f'{has}; it must be {{"{LIST_KEY}": [...]}} with the {LANDMARK_COUNT} iBug points in '
+            "their order, vertex indices or points [x, y, z]"
         )
     return lists[0]
 
@@ -181,7 +181,7 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): "
         )
-        if 2 * np.count_nonzero(off) > COUNT:
+        if 2 * np.count_nonzero(off) > LANDMARK_COUNT:
             raise AssetError(f"{where}give unit and axes of the mesh")
         numbers = ", ".join(str(number) for number in np.flatnonzero(off))
         raise MisfitError(

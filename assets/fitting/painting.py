@@ -32,7 +32,7 @@ from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST_SIDE, Texture
 from .mesh_validation import SkinPiece
 
-SIZE = 1024  # [texels] width and height of maps that are drawn again
+MAP_SIZE = 1024  # [texels] width and height of maps that are drawn again
 
 
 def spread_uv(
@@ -219,7 +219,7 @@ def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, 
 
 
 def maps_in(
-    known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (SIZE, SIZE)
+    known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (MAP_SIZE, MAP_SIZE)
 ) -> tuple[Wrinkles, Image, Image]:
     """Draw the built-in wrinkles, segments and ambient occlusion in the layout of another mesh.
 
@@ -228,11 +228,11 @@ def maps_in(
     """
     import PIL.Image  # here, because most heads do not need it
 
-    texels = texels_within(own, (SIZE, SIZE))
+    texels = texels_within(own, (MAP_SIZE, MAP_SIZE))
     place = texels.interpolate(theirs.corners)
-    segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
+    segments = np.full((MAP_SIZE, MAP_SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)
-    light = np.full((SIZE, SIZE), 255, np.uint8)
+    light = np.full((MAP_SIZE, MAP_SIZE), 255, np.uint8)
     light[texels.rows, texels.columns] = sampled(plain_skin(known)[1], place)
     found = sampled(known.wrinkles.map, place)
     change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
@@ -242,7 +242,7 @@ def maps_in(
     steepest = (
         max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
     )
-    wrinkles = np.full((SIZE, SIZE, 4), (128, 128, 0, 0), np.uint8)
+    wrinkles = np.full((MAP_SIZE, MAP_SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
     light = np.asarray(PIL.Image.fromarray(light).resize(size[::-1]))

@@ -19,7 +19,7 @@ from .landmark_file import nearest_vertices
 from .mesh_validation import SkinPiece
 
 MOST_SIMULATED = 20_000  # triangles; more would take longer, and motion would look the same
-SIMPLIFIED = 15_000  # number of triangles of a simplified mesh
+SIMPLIFIED_COUNT = 15_000  # number of triangles of a simplified mesh
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class SimulatedHead:
 
 
 def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
-    """Simplify a skin [mm] to about SIMPLIFIED triangles, most of them on the head.
+    """Simplify a skin [mm] to about SIMPLIFIED_COUNT triangles, most of them on the head.
 
     landmarks: points [mm], (68, 3). Raises AssetError if no attempt gives a manifold surface.
     """
@@ -73,7 +73,7 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
 def _with_fewer_triangles(
     skin: SkinPiece, is_head: Flags, attempt: int
 ) -> tuple[Floats64, Integers32]:
-    """Simplify a skin to SIMPLIFIED triangles; returns vertices and faces.
+    """Simplify a skin to SIMPLIFIED_COUNT triangles; returns vertices and faces.
 
     The head gets up to four fifths of these triangles, or more if the body is small. The body gets
     the rest.
@@ -81,12 +81,12 @@ def _with_fewer_triangles(
     """
     body = skin.faces[~is_head]
     if not len(body):
-        return collapsed(skin.vertices, skin.faces, SIMPLIFIED, attempt)
-    least_body = SIMPLIFIED * min(0.2, len(body) / len(skin.faces))  # triangles for the body
+        return collapsed(skin.vertices, skin.faces, SIMPLIFIED_COUNT, attempt)
+    least_body = SIMPLIFIED_COUNT * min(0.2, len(body) / len(skin.faces))  # triangles for the body
     head = skin.faces[is_head]
-    head_count = min(len(head), SIMPLIFIED - int(least_body))
+    head_count = min(len(head), SIMPLIFIED_COUNT - int(least_body))
     vertices, faces = _part_with(skin.vertices, head, head_count, attempt)
-    more, body = _part_with(skin.vertices, body, SIMPLIFIED - head_count, attempt)
+    more, body = _part_with(skin.vertices, body, SIMPLIFIED_COUNT - head_count, attempt)
     return _joined(vertices, faces, more, body)
 
 

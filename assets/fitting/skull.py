@@ -24,8 +24,8 @@ from ..model import Part
 from ..topology import boundary_loops, grid_faces
 from .warp import ThinPlateSpline
 
-FAT = np.array([0.82, 0.62, 0.42])  # sRGB
-FLESH = np.array([0.50, 0.17, 0.15])  # sRGB
+FAT_COLOUR = np.array([0.82, 0.62, 0.42])  # sRGB
+FLESH_COLOUR = np.array([0.50, 0.17, 0.15])  # sRGB
 
 
 def build_skull(head: Any, pivots: Mapping[str, Floats64]) -> dict[str, Part]:
@@ -120,7 +120,13 @@ def neck_sections(head: Any) -> list[Part]:
     chin = head.vertices[head.landmarks[8], 1]
     parts = []
     # Pairs: fraction of the radius, and colour.
-    rings = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)
+    rings = (
+        (0.0, FLESH_COLOUR),
+        (0.5, FLESH_COLOUR),
+        (0.93, FLESH_COLOUR),
+        (0.95, FAT_COLOUR),
+        (1.0, FAT_COLOUR),
+    )
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
         if edge[:, 1].max() < chin:

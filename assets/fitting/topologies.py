@@ -30,7 +30,7 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..user_files import MOST_VERTICES, named, read_file
-from .landmark_file import COUNT
+from .landmark_file import LANDMARK_COUNT
 from .mesh_validation import vertices_of_pieces
 
 Number = Annotated[int, Within(0, MOST_VERTICES)]
@@ -54,9 +54,10 @@ class Topology(Record):
     def check(self, where: str) -> None:
         """Raise AssetError unless there are 68 landmarks, and all vertex indices are in range."""
         fewest = min((vertices for vertices, _ in self.counts), default=0)
-        if len(self.landmarks) != COUNT:
+        if len(self.landmarks) != LANDMARK_COUNT:
             raise AssetError(
-                f"{where}, 'landmarks': has {len(self.landmarks)} vertex indices, must have {COUNT}"
+                f"{where}, 'landmarks': has {len(self.landmarks)} vertex indices, must have "
+                f"{LANDMARK_COUNT}"
             )
         lists = {
             "landmarks": self.landmarks,

@@ -11,9 +11,9 @@ from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
 from .hair import HAIR
 from .lids import with_lids
-from .mask import MASKS
+from .mask import MASK_COLOURS
 from .named import (
-    NAMED,
+    NAMED_PERSONS,
     Colours,
     colours_of_number,
     in_colours,
@@ -23,7 +23,7 @@ from .named import (
 )
 from .person import Person, make_person
 from .population import DARKEST_TONE, EVERYBODY, LIGHTEST_TONE, Population, drawn_irises
-from .shirts import COLLARS, SHIRTS
+from .shirts import COLLARS, SHIRT_COLOURS
 from .space import Identity, Sex, sample_identity
 from .wear import FRAMES, wearing
 
@@ -36,9 +36,9 @@ __all__ = [
     "HAIR",
     "LIGHTEST_TONE",
     "MASK",
-    "MASKS",
-    "NAMED",
-    "SHIRTS",
+    "MASK_COLOURS",
+    "NAMED_PERSONS",
+    "SHIRT_COLOURS",
     "Colours",
     "Features",
     "Identity",

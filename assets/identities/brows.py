@@ -20,7 +20,7 @@ from ...geometry.arrays import Floats32, Floats64
 from ..loading import load
 from ..smooth import smooth_step
 
-PARTS = 5  # straight segments of each hair
+SEGMENT_COUNT = 5  # straight segments of each hair
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,10 @@ def painted(brows: Brows, size: int) -> Floats32:
 
 
 def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
-    """Place n hairs: points from root to tip, seen from the front [mm], (n, PARTS + 1, 2)."""
+    """Place n hairs: points from root to tip, seen from the front [mm].
+
+    Their shape is (n, SEGMENT_COUNT + 1, 2).
+    """
     head = load("head")  # its brows give the height and the outer end
     inner, outer = head.vertices[head.landmarks[[22, 26]]]
     first = brows.inner
@@ -105,17 +108,17 @@ def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     turn = np.radians(78.0) * np.exp(-along / 0.2) + np.radians(14.0)
     turn -= np.radians(38.0) * smooth_step(0.08, 0.45, along) * smooth_step(-0.15, 0.3, across)
     turn += (0.1 + 0.4 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=len(along))
-    bend = np.linspace(1.0, 0.35, PARTS) * turn[:, None] + np.arctan(line(x, 1))[:, None]
+    bend = np.linspace(1.0, 0.35, SEGMENT_COUNT) * turn[:, None] + np.arctan(line(x, 1))[:, None]
     longest_hair = 6.5  # [mm]
     long = longest_hair * random.uniform(0.55, 1.0, len(along)) * (1.0 - 0.35 * along)
     long *= np.clip(brows.thickness / 7.0, 0.7, 1.15) * (1.0 + 0.3 * brows.unruly)
-    steps = np.stack([np.cos(bend), np.sin(bend)], axis=-1) * (long / PARTS)[:, None, None]
+    steps = np.stack([np.cos(bend), np.sin(bend)], axis=-1) * (long / SEGMENT_COUNT)[:, None, None]
     start = np.stack([x, root], axis=-1)[:, None] - 0.3 * steps.sum(axis=1, keepdims=True)
     return np.concatenate([start, start + np.cumsum(steps, axis=1)], axis=1)
 
 
 def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> None:
-    """Paint the hairs (n, PARTS + 1, 2) of one brow, thinner and fainter toward their tips.
+    """Paint the hairs (n, SEGMENT_COUNT + 1, 2) of one brow, thinner and fainter toward their tips.
 
     side: 1 for the left brow, -1 for the right one. tones: darkness of each hair, 0 to 255, (n,).
     """
@@ -128,10 +131,10 @@ def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> No
     image = Image.new("L", (fineness * int(wide), fineness * int(high)))
     pen = ImageDraw.Draw(image)
     inks = [pen.draw.draw_ink(tone) for tone in range(256)]
-    for part in range(PARTS)[::-1]:  # tips first, so that roots cover them
-        drawn = (tones * (1.0 - 0.75 * part / PARTS)).astype(int).tolist()
+    for part in range(SEGMENT_COUNT)[::-1]:  # tips first, so that roots cover them
+        drawn = (tones * (1.0 - 0.75 * part / SEGMENT_COUNT)).astype(int).tolist()
         ends = (places[:, part : part + 2] - fineness * low).reshape(-1, 4).tolist()
-        width = 2 if part < PARTS / 2 else 1
+        width = 2 if part < SEGMENT_COUNT / 2 else 1
         for end, tone in zip(ends, drawn, strict=True):
             pen.draw.draw_lines(end, inks[tone], width)  # `pen.line` is six times slower
     drawn_rows = np.asarray(image).reshape(high, fineness, -1).sum(axis=1, dtype=np.uint16)

@@ -29,11 +29,11 @@ from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
-from ..pigments import BLOOD, SHADOW, SHIPPED, changes_of, paleness_of_lips
+from ..pigments import BLOOD, SHADOW, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
-from .features import PLAIN, Features
+from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
 from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
@@ -50,8 +50,8 @@ LOCKS_LIGHTER = 1.2  # brightness relative to painted hair, which other hair sha
 SCALP_SCALE = 30.0  # [mm] behind the hairline per unit of the scalp's map
 SCALP_OFFSET = 10.0  # [mm] in front of the hairline where the map is 0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
-LEVELS = 4096  # entries of the table from light to bytes
-BAND = 16  # rows of texels that are coloured together, few enough for the processor's cache
+TABLE_SIZE = 4096  # entries of the table from light to bytes
+BAND_ROWS = 16  # rows of texels that are coloured together, few enough for the processor's cache
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def recoloured(
     angle: float,
     *,
     blood: float = 1.0,
-    features: Features = PLAIN,
+    features: Features = PLAIN_FEATURES,
     haired_as: float | None = None,
     fringe: float = 0.0,
     shrink: int = 1,
@@ -140,8 +140,8 @@ def recoloured(
     covered = kept[:0] if behind is None else grown_over(behind)
     grown = Grown(covered, hairs, MOST_COVER, np.float32(root_light))
     picture = np.empty((*kept.shape, 3), np.uint8)
-    for first in range(0, len(picture), BAND):
-        left = np.empty((3, min(BAND, len(kept) - first), kept.shape[1]), np.float32)
+    for first in range(0, len(picture), BAND_ROWS):
+        left = np.empty((3, min(BAND_ROWS, len(kept) - first), kept.shape[1]), np.float32)
         absorb(absorbed, first, left)
         np.exp(left, out=left)
         compose(left, first, tints.light, bare, tints.hair, shown, grown, _screen_bytes(), picture)
@@ -185,7 +185,7 @@ def coloured(
     angle: float,
     blood: float = 1.0,
     irises: str | None = None,
-    features: Features = PLAIN,
+    features: Features = PLAIN_FEATURES,
     shrink: int = 1,
 ) -> Person:
     """Give a person a skin tone, a colour of eyes, and hair in the person's cut.
@@ -305,7 +305,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
     scalp_map = read_arrays(head.beside("_tints.npz"))["scalp"]
     behind = np.float32(0.01 * SCALP_SCALE) * scalp_map - SCALP_OFFSET
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
-    colour = to_screen(LOCKS_LIGHTER * to_linear(np.array(SHIPPED.hair)))
+    colour = to_screen(LOCKS_LIGHTER * to_linear(np.array(SHIPPED_COMPLEXION.hair)))
     return hair_of(OWN_CUT, scalp, colour, 1.0)
 
 
@@ -340,7 +340,8 @@ def _tints() -> _Tints:
     soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], beard_blur) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
-    bare = np.maximum(light - hair[..., None] * to_linear(SHIPPED.hair).astype(np.float32), 0.0)
+    hair_colour = to_linear(SHIPPED_COMPLEXION.hair).astype(np.float32)
+    bare = np.maximum(light - hair[..., None] * hair_colour, 0.0)
     skin = arrays["skin"][:3]
     weights = arrays["skin"][3:]
     least_melanin = 0.05
@@ -393,5 +394,5 @@ def _occlusion(shrink: int) -> Image:
 
 @lru_cache(maxsize=1)
 def _screen_bytes() -> Image:
-    """Return sRGB bytes of linear light t * t, for LEVELS equal steps of t from 0 to 1."""
-    return np.rint(255.0 * to_screen(np.linspace(0.0, 1.0, LEVELS) ** 2)).astype(np.uint8)
+    """Return sRGB bytes of linear light t * t, for TABLE_SIZE equal steps of t from 0 to 1."""
+    return np.rint(255.0 * to_screen(np.linspace(0.0, 1.0, TABLE_SIZE) ** 2)).astype(np.uint8)

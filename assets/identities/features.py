@@ -43,7 +43,7 @@ class Features:
     iris: Iris = USUAL_IRIS
 
 
-PLAIN = Features()
+PLAIN_FEATURES = Features()
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:

@@ -24,7 +24,7 @@ from .furrows import (
     FEET_REACH,
     FOREHEAD_REACH,
     GLABELLA_REACH,
-    STEP,
+    SAMPLE_SPACING,
     Line,
     crows_feet,
     forehead_lines,
@@ -35,7 +35,8 @@ from .relief import add_to
 
 FULL_DEPTH = 0.8  # [mm]; depth of a furrow that the map stores as 255
 FAR_AWAY = 1e3  # [mm]; coordinates of texels outside the face
-LEVEL = np.array([128.0, 128.0, 0.0], np.float32)  # bytes of both slopes and the depth of flat skin
+# Bytes of both slopes and the depth of flat skin.
+FLAT_TEXEL = np.array([128.0, 128.0, 0.0], np.float32)
 FAN_HUB = np.array([37.0, 1.0, 77.0])  # [mm] point in the left orbit where crow's feet would meet
 
 
@@ -119,7 +120,7 @@ def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Float
 def _sample_of(reach: tuple[float, float], along: Floats64) -> Floats64:
     """Convert lengths along a line [mm] to fractional numbers of samples."""
     low, high = reach
-    return (np.clip(along, low, high - 2.0 * STEP) - low) / STEP
+    return (np.clip(along, low, high - 2.0 * SAMPLE_SPACING) - low) / SAMPLE_SPACING
 
 
 @lru_cache(maxsize=2)
@@ -165,7 +166,8 @@ def _places(shrink: int) -> _Places:
     is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < FAR_AWAY)
     taken = is_above.astype(np.float64)
     taken += first * (radius > 8.0) * (radius < 42.0) * (angle > -1.4) * (level > 0.0)
-    near[..., :3] = LEVEL + np.maximum(1.0 - taken, 0.0)[..., None] * (near[..., :3] - LEVEL)
+    kept = np.maximum(1.0 - taken, 0.0)[..., None]
+    near[..., :3] = FLAT_TEXEL + kept * (near[..., :3] - FLAT_TEXEL)
     is_between = between > 1e-3
     near[is_between, 3] = 255.0 * (between / np.maximum(between + above, 1e-9))[is_between]
     plain[rows, columns] = np.rint(near)
@@ -209,7 +211,7 @@ def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:
     near: bytes of the map, (h, w, 4).
     """
     rows, columns = np.nonzero(cover > 0.0)
-    relief = cover[rows, columns, None] * (near[rows, columns, :3] - LEVEL)
+    relief = cover[rows, columns, None] * (near[rows, columns, :3] - FLAT_TEXEL)
     seen = np.abs(relief).max(axis=1) > 0.5
     relief = relief[seen].astype(np.float32)
     return _Fold(corner[0] + rows[seen], corner[1] + columns[seen], relief)

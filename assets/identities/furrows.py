@@ -15,11 +15,11 @@ from ...geometry.arrays import Floats64
 from ..smooth import smooth_step
 from .lines import Fan, Lines, Spread
 
-STEP = 0.5  # [mm] between samples along a line
+SAMPLE_SPACING = 0.5  # [mm] between samples along a line
 FOREHEAD_REACH = -62.0, 62.0  # [mm]; x of the first and the last sample
 GLABELLA_REACH = 0.0, 50.0  # [mm]; y of the first and the last sample
 FEET_REACH = 5.0, 45.0  # [mm]; distances of the first and the last sample from the fan's hub
-FANS = {  # smallest and greatest angle of crow's feet above the horizontal [rad]
+FAN_ANGLES = {  # smallest and greatest angle of crow's feet above the horizontal [rad]
     Fan.WHOLE: (-0.95, 0.5),
     Fan.LOWER: (-0.95, -0.1),
     Fan.CENTRAL: (-0.45, 0.3),
@@ -124,7 +124,7 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
 def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
     """Choose random crow's feet of one side; some of them fork."""
     radius = _samples(FEET_REACH)
-    low, high = FANS[lines.fan]
+    low, high = FAN_ANGLES[lines.fan]
     wide = (high - low) / lines.feet
     begin = 13.0  # [mm] behind the corner of the lids
     found = []
@@ -158,4 +158,4 @@ def _random_curve(length: float, samples: Floats64, random: np.random.Generator)
 
 def _samples(reach: tuple[float, float]) -> Floats64:
     """Return coordinates of the samples along lines [mm], (s,)."""
-    return np.arange(reach[0], reach[1], STEP)
+    return np.arange(reach[0], reach[1], SAMPLE_SPACING)

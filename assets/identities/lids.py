@@ -27,8 +27,9 @@ from .person import Person
 from .relief import Relief, add_to, relief_of
 
 EYES = ("left", "right")
-POINTS = 11  # vertices on the edge of an upper lid
-STEPS = 81  # samples of the edge's curve, from which searches for the nearest point begin
+EDGE_VERTEX_COUNT = 11  # vertices on the edge of an upper lid
+# Samples of the edge's curve, from which searches for the nearest point begin.
+CURVE_SAMPLE_COUNT = 81
 
 
 def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
@@ -119,7 +120,7 @@ class _EyeTexels(NamedTuple):
 
     along: position of this point along the edge of the built-in head's lid, (n,), from 0 at the
         inner corner to 1 at the outer one.
-    edge_weights: weights of the edge's vertices at this point, (n, POINTS).
+    edge_weights: weights of the edge's vertices at this point, (n, EDGE_VERTEX_COUNT).
     """
 
     texels: Texels
@@ -128,33 +129,35 @@ class _EyeTexels(NamedTuple):
 
 
 def _edge(vertices: Floats64, side: str) -> Floats64:
-    """Return the vertices of an upper lid's edge, from the inner corner [mm], (POINTS, 3)."""
-    return vertices[load("head").rings[f"eye_2_{side}"][:POINTS]]
+    """Return an upper lid's edge from the inner corner [mm], (EDGE_VERTEX_COUNT, 3)."""
+    return vertices[load("head").rings[f"eye_2_{side}"][:EDGE_VERTEX_COUNT]]
 
 
 def _edge_weights(along: Floats64, derivative: int = 0) -> Floats64:
-    """Return weights of the edge's vertices, or derivatives, along its curve, (n, POINTS).
+    """Return weights of the edge's vertices along its curve, or their derivatives.
+
+    The shape is (n, EDGE_VERTEX_COUNT).
 
     The curve is a smoothing spline that passes near the vertices. A curve through them would have
     corners, and so would the crease parallel to it.
     """
     bend_cost = 1.0  # weight of squared second derivatives, relative to squared distances
-    numbers = np.arange(float(POINTS))
+    numbers = np.arange(float(EDGE_VERTEX_COUNT))
     columns = [
         scipy.interpolate.make_smoothing_spline(numbers, each, lam=bend_cost)
-        for each in np.eye(POINTS)
+        for each in np.eye(EDGE_VERTEX_COUNT)
     ]
-    places = along * (POINTS - 1.0)
-    scale = (POINTS - 1.0) ** derivative
+    places = along * (EDGE_VERTEX_COUNT - 1.0)
+    scale = (EDGE_VERTEX_COUNT - 1.0) ** derivative
     return scale * np.column_stack([each(places, nu=derivative) for each in columns])
 
 
 def _nearest(places: Floats64, points: Floats64) -> Floats64:
     """Find the nearest points of an edge's curve for places (n, 3); returns positions 0 to 1.
 
-    points: vertices of the edge [mm], (POINTS, 3).
+    points: vertices of the edge [mm], (EDGE_VERTEX_COUNT, 3).
     """
-    steps = np.linspace(0.0, 1.0, STEPS)
+    steps = np.linspace(0.0, 1.0, CURVE_SAMPLE_COUNT)
     along = steps[scipy.spatial.cKDTree(_edge_weights(steps) @ points).query(places)[1]]
     for _ in range(2):  # by Newton's method
         offset, first, second = (_edge_weights(along, n) @ points for n in range(3))
@@ -170,7 +173,7 @@ def _texels_around(side: str, size: int) -> _EyeTexels:
     head = load("head")
     reach = 11.0  # [mm] around the edge of the lid, beyond all folds
     points = _edge(head.vertices, side)
-    curve = scipy.spatial.cKDTree(_edge_weights(np.linspace(0.0, 1.0, STEPS)) @ points)
+    curve = scipy.spatial.cKDTree(_edge_weights(np.linspace(0.0, 1.0, CURVE_SAMPLE_COUNT)) @ points)
     is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
     corners = head.uv[head.face_uv].astype(np.float64)
     corners[~is_near] = -1.0  # outside the map

@@ -19,8 +19,8 @@ from ..model import Part
 from ..smooth import Points, smooth_step
 
 MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
-STATIONS = 3  # points along a lock: root, middle and tip
-CORNERS = 2 * STATIONS - 1  # vertices of a lock
+STATION_COUNT = 3  # points along a lock: root, middle and tip
+VERTEX_COUNT = 2 * STATION_COUNT - 1  # vertices of a lock
 FINEST_RADIUS = 0.05  # [mm]; radius with which a single hair is drawn
 
 
@@ -75,7 +75,7 @@ FALLING_HAIR = Growth(
     radius=75.0,
     fringe=-1.0,
 )
-TIPS = Growth(
+TIP_GROWTH = Growth(
     count=1600,
     root=0.6,
     tip=2.3,
@@ -87,7 +87,7 @@ TIPS = Growth(
     radius=400.0,
     fringe=1.0,
 )  # of cut hair, on the last millimetres
-INNER_TIPS = replace(TIPS, root=-0.1, tip=1.6)  # seen from within, before the innermost layer
+INNER_TIPS = replace(TIP_GROWTH, root=-0.1, tip=1.6)  # seen from within, before the innermost layer
 # Hair on a knot, which is rounder.
 WOUND_HAIR = replace(FALLING_HAIR, count=350, longest=22.0, radius=30.0)
 
@@ -118,7 +118,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
     reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
     length = np.minimum(reach * np.maximum(long, growth.least), growth.longest)
-    t = np.linspace(0.0, 1.0, STATIONS, dtype=np.float32)[:, None]
+    t = np.linspace(0.0, 1.0, STATION_COUNT, dtype=np.float32)[:, None]
     # Locks bend around the head, so their tips hang.
     bend = length**2 / (2.0 * growth.radius) * normal
     start = root + (growth.root - MEAN_PLACE) * way
@@ -135,8 +135,8 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     def rows(first: Floats32 | Floats64, second: Floats32 | Floats64 | None = None) -> Floats32:
         """Return values of both sides of stations as rows of vertices; a tip has one vertex."""
         both = np.stack([first, first if second is None else second], axis=2)
-        whole = both.reshape(len(both), 2 * STATIONS, -1)[:, :CORNERS]
-        return np.ascontiguousarray(whole.reshape(len(both) * CORNERS, -1), np.float32)
+        whole = both.reshape(len(both), 2 * STATION_COUNT, -1)[:, :VERTEX_COUNT]
+        return np.ascontiguousarray(whole.reshape(len(both) * VERTEX_COUNT, -1), np.float32)
 
     every = np.broadcast_to(normal[:, None], midpoints.shape)
     return replace(
@@ -205,10 +205,10 @@ def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
 def _ribbons(count: int) -> Integers32:
     """Return the faces of locks, counter-clockwise from outside, (count * 3, 3)."""
     one = []
-    for k in range(0, CORNERS - 3, 2):
+    for k in range(0, VERTEX_COUNT - 3, 2):
         one += [(k, k + 1, k + 2), (k + 2, k + 1, k + 3)]
-    one.append((CORNERS - 3, CORNERS - 2, CORNERS - 1))
-    firsts = CORNERS * np.arange(count, dtype=np.int32)
+    one.append((VERTEX_COUNT - 3, VERTEX_COUNT - 2, VERTEX_COUNT - 1))
+    firsts = VERTEX_COUNT * np.arange(count, dtype=np.int32)
     found = (firsts[:, None, None] + np.array(one, np.int32)).reshape(-1, 3)
     found.flags.writeable = False
     return found

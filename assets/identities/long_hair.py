@@ -21,15 +21,16 @@ from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR, Cut, Fall, Scalp, from_within
-from .locks import FALLING_HAIR, INNER_TIPS, MEAN_PLACE, TIPS, WOUND_HAIR, locks_on
+from .locks import FALLING_HAIR, INNER_TIPS, MEAN_PLACE, TIP_GROWTH, WOUND_HAIR, locks_on
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
-EDGE, ROUNDED = np.radians([62.0, 50.0])
-HEM = 4.0  # [mm] over which the tips of cut hair thin out
+HAIR_EDGE_ANGLE, ROUNDING_ANGLE = np.radians([62.0, 50.0])
+THINNING_LENGTH = 4.0  # [mm] over which the tips of cut hair thin out
 FULL_DENSITY = 2.0  # density at which all layers are full
-VOLUME = 9.0  # [mm] that hair stands off the head
-SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
-DOWN, RIGHT = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])  # tails hang clear of the back
+HAIR_HEIGHT = 9.0  # [mm] that hair stands off the head
+LAYER_SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
+# Tails hang clear of the back.
+DOWN_AXIS, RIGHT_AXIS = np.array([(0.0, -1.0, -0.12), (1.0, 0.0, 0.0)])
 Even = Floats64 | float  # a single number holds for every point
 
 
@@ -51,7 +52,7 @@ def falling_hair(
     side = np.sign(around)
     crown = vertices[at["vertex"]] + [0.4 * cut.parting, 0.0, -30.0] - middle
     front = vertices[at["trichion"]] + [cut.parting, 0.0, -4.0] - middle
-    angle = EDGE + (np.pi - EDGE) * share**1.3
+    angle = HAIR_EDGE_ANGLE + (np.pi - HAIR_EDGE_ANGLE) * share**1.3
     level = np.stack([side * np.sin(angle), 0.0 * angle, np.cos(angle)], axis=-1)
     sample_count = 14  # along the part of a strand on the head; one fewer along the free part
     over = np.linspace(0.0, 1.0, sample_count)
@@ -62,13 +63,13 @@ def falling_hair(
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
     # Beside the face the outer surface of the hair curves inward to its inner surface.
-    beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)
+    beside = np.clip((angle - HAIR_EDGE_ANGLE) / ROUNDING_ANGLE, 0.0005, 1.0)
     ragged_depth = 3.0  # [mm] of uneven tips, in waves of many strands: shorter ones are teeth
     layered_rise = 16.0  # [mm] that tips rise in front
     ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
     rise = np.clip(over / 0.35, 0.0, 1.0)  # 0 at the root, 1 where the volume is full
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
-    thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
+    thick = HAIR_HEIGHT * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
@@ -86,11 +87,11 @@ def falling_hair(
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
     bent[:, 0] = sharp[:, 0]  # roots stay
     along = _along(bent)
-    off = 88.0 * (angle - EDGE)[:, None]
+    off = 88.0 * (angle - HAIR_EDGE_ANGLE)[:, None]
     # Hair becomes dense within 2 mm of the parting and 4 mm of the face. Over longer distances, the
     # strands in front would look like bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
-    dense = np.minimum(dense, (along[:, -1:] - along) / HEM)
+    dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
     hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
     return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
 
@@ -107,7 +108,7 @@ def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
     is_last = (hair.faces % sample_count >= sample_count - 2).all(axis=1)
     inner = replace(lit, name=lit.name + "_tips", faces=lit.faces[is_last])
     outer = replace(hair, name=hair.name + "_tips", faces=hair.faces[is_last])
-    return inside, hair, locks_on(inner, INNER_TIPS), locks_on(outer, TIPS)
+    return inside, hair, locks_on(inner, INNER_TIPS), locks_on(outer, TIP_GROWTH)
 
 
 def _slide(along: Floats64) -> Floats64:
@@ -117,7 +118,7 @@ def _slide(along: Floats64) -> Floats64:
     halves would meet there in a hard edge, one side bright and the other dark.
     """
     rising_length = 40.0  # [mm]
-    return np.asarray(SLIDE * smooth_step(0.0, rising_length, along))
+    return np.asarray(LAYER_SLIDE * smooth_step(0.0, rising_length, along))
 
 
 def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
@@ -212,14 +213,14 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     place = np.linspace(0.0, 2.0 * np.pi, strand_count)[:, None, None]
     groove = free * (0.5 + 0.5 * np.cos(count * place)) ** 3
     turn = np.pi + place + 2.0 * np.pi * turns * t  # begins on the side of the head
-    upward = unit_vectors(np.cross(RIGHT, directions))
+    upward = unit_vectors(np.cross(RIGHT_AXIS, directions))
     ring = np.cos(turn) * upward + np.sin(turn) * np.cross(directions, upward)
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
     places[-1] = places[0]  # to the bit, or light shines through the seam
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = count * wide * place[..., 0] / (2.0 * np.pi)
-    tied = _layers(HAIR + "_tied", places, across, VOLUME, dense[:, 0], light * colour)
+    tied = _layers(HAIR + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], light * colour)
     on_scalp = short.hair_of(cut, scalp, colour, length)
     locks = locks_on(tied, FALLING_HAIR if cut.tail else WOUND_HAIR)
     return (*on_scalp, from_within(tied, tied.faces), tied, locks)
@@ -234,7 +235,7 @@ def _falling(far: Floats64, out: Floats64, aside: float, first: float, last: flo
     bent = smooth_step(first, last, far)
     straight_distances = 95.0, 190.0  # [mm] between which the sideways fall ends
     sideways = aside * (1.0 - smooth_step(*straight_distances, far))
-    return unit_vectors((1.0 - bent) * out + bent * (DOWN - sideways * RIGHT))
+    return unit_vectors((1.0 - bent) * out + bent * (DOWN_AXIS - sideways * RIGHT_AXIS))
 
 
 def _layers(
@@ -244,7 +245,7 @@ def _layers(
     thick: Even,
     dense: Even,
     colour: Floats64,
-    slide: Even = SLIDE,
+    slide: Even = LAYER_SLIDE,
 ) -> Part:
     """Make a part of n parallel strands with m points each, which is drawn in layers.
 

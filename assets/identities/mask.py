@@ -19,14 +19,14 @@ from ..smooth import smooth_step
 from .person import Person
 from .wires import Colour, Tube, beside_head, joined, sheet, tube
 
-MASKS: Mapping[str, Colour] = MappingProxyType(
+MASK_COLOURS: Mapping[str, Colour] = MappingProxyType(
     {
         "blue": (0.50, 0.68, 0.78),
         "white": (0.84, 0.85, 0.85),
         "black": (0.07, 0.07, 0.08),
     }
 )
-SHAPE = (57, 49)  # rows from the nose to the chin, columns from right to left
+MASK_SHAPE = (57, 49)  # rows from the nose to the chin, columns from right to left
 
 
 def mask(person: Person, colour: Colour) -> Part:
@@ -34,17 +34,17 @@ def mask(person: Person, colour: Colour) -> Part:
     axis = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
     axis[2] += 30.0
     turn, height = _places(person)
-    outward = np.stack([np.sin(turn), np.zeros(SHAPE), np.cos(turn)], axis=-1)
-    level = np.stack([np.zeros(SHAPE), height, np.zeros(SHAPE)], axis=-1)
+    outward = np.stack([np.sin(turn), np.zeros(MASK_SHAPE), np.cos(turn)], axis=-1)
+    level = np.stack([np.zeros(MASK_SHAPE), height, np.zeros(MASK_SHAPE)], axis=-1)
     reach = _membrane(_skin_below(person, axis, turn, height))
-    down = np.linspace(0.0, 1.0, SHAPE[0])[:, None]
-    aside = np.abs(np.linspace(-1.0, 1.0, SHAPE[1]))
+    down = np.linspace(0.0, 1.0, MASK_SHAPE[0])[:, None]
+    aside = np.abs(np.linspace(-1.0, 1.0, MASK_SHAPE[1]))
     pleats, creases = _pleats(down, aside)
     outer = axis + level + (reach + pleats)[..., None] * outward
     thickness = 0.7  # [mm]
     inner = axis + level + (reach - thickness)[..., None] * outward
     is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
-    shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(SHAPE)])
+    shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(MASK_SHAPE)])
     shares = _mandible_weights(person, outer)
     cover = _Piece(sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
     return _joined([cover, *_loops(person, outer, shares, colour)])
@@ -93,26 +93,26 @@ def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) ->
 
 
 def _places(person: Person) -> tuple[Floats64, Floats64]:
-    """Return angles [rad] and heights [mm] of the sheet's vertices around an axis, both SHAPE.
+    """Return angles [rad] and heights [mm] of the sheet's vertices around an axis, both MASK_SHAPE.
 
     The axis of the cylinder is vertical; angle 0 points forward.
     """
     landmarks = person.vertices[person.landmarks]
     widest = np.radians(66.0)
-    across = np.linspace(-1.0, 1.0, SHAPE[1])
+    across = np.linspace(-1.0, 1.0, MASK_SHAPE[1])
     ear = float(person.vertices[person.anatomy["tragion_left"], 1])
     bridge = float(landmarks[28, 1])
     chin = float(landmarks[8, 1])
     corner = float(landmarks[48, 1])
     top = bridge + (ear - 15.0 - bridge) * smooth_step(0.1, 0.95, np.abs(across))
     bottom = chin - 6.0 + (corner - 12.0 - chin + 6.0) * np.abs(across) ** 2.6
-    down = np.linspace(0.0, 1.0, SHAPE[0])[:, None]
+    down = np.linspace(0.0, 1.0, MASK_SHAPE[0])[:, None]
     height = top + down * (bottom - top)
-    return np.broadcast_to(widest * across, SHAPE), height
+    return np.broadcast_to(widest * across, MASK_SHAPE), height
 
 
 def _skin_below(person: Person, axis: Floats64, turn: Floats64, height: Floats64) -> Floats64:
-    """Measure how far the skin under each vertex of the sheet lies from the axis [mm], SHAPE.
+    """Measure how far the skin under each vertex of the sheet lies from the axis [mm], MASK_SHAPE.
 
     axis: a point of the axis. turn, height: as `_places` returns them.
     """
@@ -135,10 +135,10 @@ def _skin_below(person: Person, axis: Floats64, turn: Floats64, height: Floats64
 
 
 def _membrane(skin: Floats64) -> Floats64:
-    """Compute a taut sheet's distances from the axis [mm], SHAPE.
+    """Compute a taut sheet's distances from the axis [mm], MASK_SHAPE.
 
-    skin: distances of the skin from the axis [mm], of SHAPE. The upper edge and the sides of the
-    sheet lie on the skin.
+    skin: distances of the skin from the axis [mm], of MASK_SHAPE. The upper edge and the sides of
+    the sheet lie on the skin.
     """
     clearance = 2.6  # [mm]
     below = skin + clearance

@@ -26,7 +26,7 @@ class _Known(NamedTuple):
     cut: str
 
 
-NAMED: Mapping[str, _Known] = MappingProxyType(
+NAMED_PERSONS: Mapping[str, _Known] = MappingProxyType(
     {
         "ada": _Known(108, Sex.WOMAN, 27.0, 34.0, "hazel", "parted"),
         "kofi": _Known(118, Sex.MAN, 38.0, -38.0, "brown", "cropped"),
@@ -87,20 +87,22 @@ def in_colours(person: Person, colours: Colours, *, shrink: int = 1) -> Person:
 @cache
 def person_in_words(who: int | str) -> str:
     """Describe a person, given by number or name, such as "Person 7, woman, about 60"."""
-    known = sample_identity(who) if isinstance(who, int) else NAMED[who]
+    known = sample_identity(who) if isinstance(who, int) else NAMED_PERSONS[who]
     name = f"Person {who}" if isinstance(who, int) else who.capitalize()
     return f"{name}, {known.sex.value}, about {5 * round(known.age / 5.0)}"
 
 
 def person_called(who: int | str) -> Person:
-    """Make a person, given by number (0 or more) or by a name of `NAMED`, in the person's colours.
+    """Make a person, in the person's colours.
+
+    who: a number (0 or more) or a name of `NAMED_PERSONS`.
 
     Raises KeyError for other names.
     """
     if isinstance(who, int):
         made = with_colours_of_number(make_person(sample_identity(who)), who)
         return replace(made, called=str(who))
-    known = NAMED[who]
+    known = NAMED_PERSONS[who]
     drawn = sample_identity(known.seed, sex=known.sex, age=known.age)
     made = make_person(replace(drawn, cut=known.cut))
     made = with_colours_of_number(made, known.seed, angle=known.angle, irises=known.irises)

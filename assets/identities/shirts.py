@@ -22,7 +22,7 @@ from ..smooth import smooth_step
 from ..topology import grid_faces
 from .wires import Colour, Tube, joined, sheet
 
-SHIRTS: Mapping[str, Colour] = MappingProxyType(
+SHIRT_COLOURS: Mapping[str, Colour] = MappingProxyType(
     {
         "blue": (0.22, 0.24, 0.28),  # the shirt of the built-in head
         "white": (0.80, 0.79, 0.77),
@@ -34,8 +34,8 @@ SHIRTS: Mapping[str, Colour] = MappingProxyType(
         "sky": (0.47, 0.59, 0.72),
     }
 )
-COLUMNS = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
-BAND = 4  # row of the built-in shirt at the upper outer edge of the band
+COLUMN_COUNT = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
+BAND_ROW = 4  # row of the built-in shirt at the upper outer edge of the band
 
 
 class _Cloth(NamedTuple):
@@ -46,11 +46,11 @@ class _Cloth(NamedTuple):
 
 
 def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
-    """Change the built-in shirt of a person to a colour of SHIRTS and a collar of COLLARS.
+    """Change the built-in shirt of a person to a colour of SHIRT_COLOURS and a collar of COLLARS.
 
     skin: vertices of the person's head [mm], (V, 3). Raises KeyError for other colours and collars.
     """
-    pieces = COLLARS[collar](shirt, skin, np.array(SHIRTS[colour]))
+    pieces = COLLARS[collar](shirt, skin, np.array(SHIRT_COLOURS[colour]))
     surface = joined([each.surface for each in pieces])
     return replace(
         shirt,
@@ -63,14 +63,14 @@ def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
 
 def _in_colour(shirt: Part, colour: Floats64) -> _Cloth:
     """Change the colour (sRGB, (3,)) of the built-in shirt, and keep its shades."""
-    shade = shirt.colours / np.array(SHIRTS["blue"])
+    shade = shirt.colours / np.array(SHIRT_COLOURS["blue"])
     vertices, normals = (each.astype(np.float64) for each in (shirt.vertices, shirt.normals))
     return _Cloth(Tube(vertices, normals, shirt.faces), shade * colour)
 
 
 def _unshaded_colour(shirt: Part, colour: Floats64) -> Floats64:
     """Return the unshaded colour of a person's shirt, sRGB, (3,)."""
-    return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRTS["blue"]) * colour)
+    return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRT_COLOURS["blue"]) * colour)
 
 
 def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
@@ -80,13 +80,13 @@ def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make a shirt with a high collar that is folded over."""
-    columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
+    columns = np.linspace(0.0, COLUMN_COUNT, 3 * COLUMN_COUNT, endpoint=False)
     surface = _Surface(shirt)
     band, root = (
         scipy.ndimage.gaussian_filter1d(surface.down(columns, depth)[0], 4.0, axis=0, mode="wrap")
         for depth in (np.zeros((1, 1)), np.full((1, 1), 17.0))
     )
-    to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / COLUMNS)
+    to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / COLUMN_COUNT)
     rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
     axis = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
@@ -96,7 +96,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
-    wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMNS)[:, None]
+    wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMN_COUNT)[:, None]
     rows = []
     for fraction, outside in profile:
         there = inner + fraction * (root - inner)
@@ -118,8 +118,8 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     down = np.linspace(0.0, 1.0, 13)[:, None]
     along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one tip to the other
     opening = 0.35 + 3.6 * down**0.6  # columns between the midline and each edge of the collar
-    columns = opening + along * (COLUMNS - 2.0 * opening)
-    from_front = np.minimum(columns, COLUMNS - columns)
+    columns = opening + along * (COLUMN_COUNT - 2.0 * opening)
+    from_front = np.minimum(columns, COLUMN_COUNT - columns)
     length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
     fold = surface.down(columns, np.zeros_like(columns))
     hem = surface.down(columns, length) + 2.6 * surface.outward(columns, length)
@@ -175,8 +175,8 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     beside = 17.5
     line = lowest + (beside - lowest) * half
     found = surface.columns_at(58.0 * half, line)[:, 0]
-    columns = np.linspace(0.0, COLUMNS, 3 * COLUMNS, endpoint=False)
-    from_front = np.minimum(columns, COLUMNS - columns)
+    columns = np.linspace(0.0, COLUMN_COUNT, 3 * COLUMN_COUNT, endpoint=False)
+    from_front = np.minimum(columns, COLUMN_COUNT - columns)
     edge = np.interp(from_front, found, line[:, 0])
     ribbed = 15.0  # [mm]; width of the ribbed border
     steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
@@ -190,7 +190,7 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     outward = surface.outward(columns, depths)
     points = surface.down(columns, depths) + away[:, None, None] * outward
     is_light = colour.mean() > 0.5
-    below = np.array(SHIRTS["blue" if is_light else "white"])
+    below = np.array(SHIRT_COLOURS["blue" if is_light else "white"])
     knitted = shades[:, None] * np.ones(len(columns))
     knitted[1:6] *= _ribs(len(columns))
     jersey = _rowed(points, knitted, _unshaded_colour(shirt, colour), closed=True)
@@ -205,22 +205,24 @@ COLLARS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = Mapp
 class _Surface:
     """The outer surface of the built-in shirt, from the upper edge of the band down.
 
-    A point has two coordinates: a fractional column, 0 to COLUMNS, and a depth below the edge [mm].
+    A point has two coordinates: a fractional column, 0 to COLUMN_COUNT, and a depth below the edge
+    [mm].
     """
 
     def __init__(self, shirt: Part) -> None:
-        rows = (len(shirt.vertices) - 1) // COLUMNS
-        grid = shirt.vertices[: rows * COLUMNS].astype(np.float64).reshape(rows, COLUMNS, 3)
-        self._grid = np.concatenate([grid, grid[:, :1]], axis=1)[BAND:-1]
+        rows = (len(shirt.vertices) - 1) // COLUMN_COUNT
+        on_grid = shirt.vertices[: rows * COLUMN_COUNT].astype(np.float64)
+        grid = on_grid.reshape(rows, COLUMN_COUNT, 3)
+        self._grid = np.concatenate([grid, grid[:, :1]], axis=1)[BAND_ROW:-1]
         lengths = np.linalg.norm(np.diff(self._grid, axis=0), axis=-1)
-        self._depths = np.vstack([np.zeros(COLUMNS + 1), np.cumsum(lengths, axis=0)])
+        self._depths = np.vstack([np.zeros(COLUMN_COUNT + 1), np.cumsum(lengths, axis=0)])
         normals = vertex_normals(shirt.vertices.astype(np.float64), shirt.faces)
-        outward = normals[: rows * COLUMNS].reshape(rows, COLUMNS, 3)
-        self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND:-1]
+        outward = normals[: rows * COLUMN_COUNT].reshape(rows, COLUMN_COUNT, 3)
+        self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND_ROW:-1]
 
     def lowest(self, columns: Floats64) -> Floats64:
         """Return depths of the shirt's lower edge [mm], of the shape of `columns`."""
-        return np.asarray(np.interp(columns, np.arange(COLUMNS + 1), self._depths[-1]))
+        return np.asarray(np.interp(columns, np.arange(COLUMN_COUNT + 1), self._depths[-1]))
 
     def down(self, columns: Floats64, depths: Floats64) -> Floats64:
         """Return points [mm], (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
@@ -234,13 +236,14 @@ class _Surface:
     def columns_at(self, across: Floats64, depths: Floats64) -> Floats64:
         """Find columns of the front, (r, n), where x is `across` [mm]; depths: [mm], (r, 1)."""
         places = np.linspace(-13.0, 13.0, 131)
-        found = self.down(places % COLUMNS, np.broadcast_to(depths, (len(depths), len(places))))
+        all_depths = np.broadcast_to(depths, (len(depths), len(places)))
+        found = self.down(places % COLUMN_COUNT, all_depths)
         rows = [np.interp(x, line[:, 0], places) for x, line in zip(across, found, strict=True)]
-        return np.stack(rows) % COLUMNS
+        return np.stack(rows) % COLUMN_COUNT
 
     def _read(self, values: Floats64, columns: Floats64, depths: Floats64) -> Floats64:
         columns, depths = np.broadcast_arrays(columns, depths)
-        before = np.minimum(columns.astype(int), COLUMNS - 1)
+        before = np.minimum(columns.astype(int), COLUMN_COUNT - 1)
         fraction = columns - before
         lengths = self._depths[:, before] + fraction * np.diff(self._depths, axis=1)[:, before]
         row = np.clip((lengths <= depths).sum(axis=0) - 1, 0, len(lengths) - 2)

@@ -18,8 +18,8 @@ depends on the skin tone.
 
 Three widths of the norms were measured with calipers, which press the skin onto the bone. So the
 norms give less than the width of the surface: their ratio of jaw width to the distance of the outer
-eye corners is 1.15, and 1.3 on three scanned persons. PRESSED corrects this. Its lengths are chosen
-so that these three persons agree with the norms.
+eye corners is 1.15, and 1.3 on three scanned persons. PRESSED_DEPTHS corrects this. Its lengths are
+chosen so that these three persons agree with the norms.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
 MOST_DEVIATIONS = 2.5  # standard deviations; random numbers are clipped to this
-PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] that calipers press, on both sides
+# [mm] that calipers press, on both sides.
+PRESSED_DEPTHS = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}
 AGEING_START = 30.0  # [years] from which age is visible
 # Points of the left half: an anatomical name or the number of a landmark, a direction, the motion
 # in ten years [mm], and the distance of a man's point from the mean of both sexes [mm]. Upward and
@@ -124,7 +125,7 @@ def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
     measures: code -> length [mm].
     """
     return {
-        code: sample.score(measures[code] - PRESSED.get(code, 0.0))
+        code: sample.score(measures[code] - PRESSED_DEPTHS.get(code, 0.0))
         for code, sample in norms_of(sex).items()
     }
 
@@ -198,7 +199,7 @@ class PersonSpace:
         mean_measures = np.array(
             [0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()]
         )
-        surface = np.array([found[code] - PRESSED.get(code, 0.0) for code in NORMS])
+        surface = np.array([found[code] - PRESSED_DEPTHS.get(code, 0.0) for code in NORMS])
         means = np.array([sample.mean for sample in norms.values()])
         deviations = np.array([sample.deviation for sample in norms.values()])
         rows = self.slopes / deviations[:, None]

@@ -19,7 +19,7 @@ from .person import Person
 from .relief import Relief, relief_of
 
 # Course of the built-in head's muscles: height [mm], and angle around the neck [deg], 90 in front.
-COURSE = np.array(
+COURSE_POINTS = np.array(
     [(-165, 60), (-150, 45), (-140, 33), (-130, 22), (-120, 13), (-110, 8), (-100, 3), (-60, -14)]
 )
 
@@ -58,7 +58,7 @@ def _raised(size: int, side: float) -> tuple[Relief, Relief]:
     x, y, z = texels.interpolate(head.vertices[head.faces]).T
     axis_depth = -8.0  # [mm]; z of the neck's axis
     angle = np.arctan2(z - axis_depth, side * x)
-    centre_line = np.radians(np.interp(y, *COURSE.T))
+    centre_line = np.radians(np.interp(y, *COURSE_POINTS.T))
     off = np.hypot(x, z - axis_depth) * (angle - centre_line)  # [mm] in front of the centre line
     belly_width = 8.5  # [mm]
     belly = np.exp(-((off / belly_width) ** 2))

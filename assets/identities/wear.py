@@ -16,7 +16,7 @@ import scipy
 
 from ...geometry.arrays import Floats64
 from ..model import GLASSES, Part
-from .mask import MASKS, mask
+from .mask import MASK_COLOURS, mask
 from .person import Person
 from .shirts import in_shirt
 from .wires import Colour, beside_head, joined, tube
@@ -59,9 +59,10 @@ def wearing(
     frame: str | None = None,
     cover: str | None = None,
 ) -> Person:
-    """Dress a person in a shirt of SHIRTS with a collar of COLLARS.
+    """Dress a person in a shirt of SHIRT_COLOURS with a collar of COLLARS.
 
-    frame: glasses of FRAMES, or None. cover: a mask of MASKS, or None. Other names raise KeyError.
+    frame: glasses of FRAMES, or None. cover: a mask of MASK_COLOURS, or None. Other names raise
+    KeyError.
     """
     parts = [
         in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
@@ -69,7 +70,7 @@ def wearing(
     ]
     nose = None
     if cover is not None:
-        sheet = mask(person, MASKS[cover])
+        sheet = mask(person, MASK_COLOURS[cover])
         parts.append(sheet)
         nose = np.vstack([person.vertices, sheet.vertices])
     if frame is not None:

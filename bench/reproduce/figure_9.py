@@ -17,7 +17,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
-from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
+from risorius.assets.sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
 from risorius.geometry.arrays import Floats64
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
@@ -79,7 +79,7 @@ class Waving:
         self._camera = camera_for(self._scene, view)
         # Cells of the true sine per cell of the plane in each direction: smaller than pixels.
         fineness = 24
-        self._dense = make_grid(COLUMNS * fineness, ROWS * fineness, CELL / fineness)
+        self._dense = make_grid(COLUMN_COUNT * fineness, ROW_COUNT * fineness, CELL_SIZE / fineness)
 
     def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
         """The picture of a variant, and the number of its triangles."""

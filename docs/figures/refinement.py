@@ -20,7 +20,7 @@ from PIL import ImageDraw
 from risorius.app.capture.captions import font
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Floats64
-from risorius.refine.kahler.table import POINTS, splits_of, subdivide
+from risorius.refine.kahler.table import POINT_COORDINATES, splits_of, subdivide
 
 Points = npt.NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def equilateral(centre: Place, side: float) -> Floats64:
 
 def points_in(corners: Points) -> Points:
     """The 12 numbered points of a triangle with these corners, shape (12, 2)."""
-    return np.asarray(POINTS @ corners / 4.0)
+    return np.asarray(POINT_COORDINATES @ corners / 4.0)
 
 
 def new_points(splits: tuple[int, int, int]) -> list[int]:

@@ -30,16 +30,16 @@ from .measuring import Maximum
 from .surface_normals import RefinedNormals
 
 CriterionLike = str | Criterion | Sequence[str | Criterion]
-WHICH_EDGES = Option(
+CRITERION_OPTION = Option(
     "chooses the split edges; normal: where the mesh bends (the paper's), rest: where it is curved "
     "at rest, for round outlines, displacement: where the scheme moves edges"
 )
-GROWING = Option("new points move gradually out of edges, so nothing pops")
-LIT_BY = Option(
+BLEND_OPTION = Option("new points move gradually out of edges, so nothing pops")
+NORMALS_OPTION = Option(
     "normals for shading; linear: interpolated on the mesh (the paper's), refined: of the refined "
     "surface"
 )
-IN_ORDER = Option(
+COHERENT_OPTION = Option(
     "triangles are cut in the order in which their edges split, and no line turns; for flat shading"
 )
 
@@ -50,12 +50,12 @@ def create_kahler(
     *,
     threshold_once: DropOnce = THRESHOLD_ONCE,
     threshold_twice: DropTwice = THRESHOLD_TWICE,
-    criterion: Annotated[CriterionLike, WHICH_EDGES] = "normal",
+    criterion: Annotated[CriterionLike, CRITERION_OPTION] = "normal",
     splits: npt.ArrayLike | None = None,
     scheme: Annotated[str | Scheme, Option("where the new points go")] = "loop",
-    blend: Annotated[bool | None, GROWING] = None,
-    normals: Annotated[Literal["linear", "refined"] | None, LIT_BY] = None,
-    coherent: Annotated[bool, IN_ORDER] = False,
+    blend: Annotated[bool | None, BLEND_OPTION] = None,
+    normals: Annotated[Literal["linear", "refined"] | None, NORMALS_OPTION] = None,
+    coherent: Annotated[bool, COHERENT_OPTION] = False,
     **values: Unpack[Values],
 ) -> Kahler:
     """Bind the paper's refiner to a mesh, changed by the options (see `registry.create`).

@@ -29,7 +29,7 @@ from ...geometry.arrays import Flags, Integers32, Integers64
 from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
-PARTS = 2**9 * 3**2 * 5 * 7
+LATTICE_STEPS = 2**9 * 3**2 * 5 * 7
 """Steps along an edge of the lattice to which places are rounded, so equal places compare equal.
 
 The points of nine levels of halving lie on the lattice, and so do thirds, fifths, sevenths and
@@ -45,7 +45,7 @@ class _Places(NamedTuple):
     vertices: Integers64
     """Input vertices in rising order, shape (N, 3); -1 for a vertex with no part in the place."""
     parts: Integers64
-    """Weights of these vertices in parts, which add up to `PARTS`, shape (N, 3)."""
+    """Weights of these vertices in parts, which add up to `LATTICE_STEPS`, shape (N, 3)."""
 
 
 class BrokenMeshError(ValueError):
@@ -131,13 +131,13 @@ def _rounded(origins: Origins) -> _Places:
         abs(origins.weights.sum(axis=1, dtype=np.float64) - 1.0) < 1e-5,
         "origins have weights that add up to one",
     )
-    parts = np.rint(origins.weights * float(PARTS)).astype(np.int64)
+    parts = np.rint(origins.weights * float(LATTICE_STEPS)).astype(np.int64)
     _require_all((parts >= 0).all(axis=1), "origins have no weights below zero")
     vertices = np.where(parts > 0, origins.vertices, -1).astype(np.int64)
     order = np.argsort(vertices, axis=1)
     vertices = np.take_along_axis(vertices, order, axis=1)
     parts = np.take_along_axis(parts, order, axis=1)
-    parts[np.arange(len(parts)), parts.argmax(axis=1)] += PARTS - parts.sum(axis=1)
+    parts[np.arange(len(parts)), parts.argmax(axis=1)] += LATTICE_STEPS - parts.sum(axis=1)
     return _Places(vertices, parts)
 
 
@@ -177,7 +177,7 @@ def _places_in_source(
     is_corner = places.vertices[triangles][..., None] == source_faces[:, None, None, :]
     corners = (places.parts[triangles][..., None] * is_corner).sum(axis=2)
     _require_all(
-        (corners.sum(axis=2) == PARTS).all(axis=1),
+        (corners.sum(axis=2) == LATTICE_STEPS).all(axis=1),
         "the vertices of a subtriangle lie in the input triangle it is part of",
     )
     return np.asarray(corners, dtype=np.int64)
@@ -188,7 +188,7 @@ def _check_cover(
 ) -> None:
     u = corners[:, 1] - corners[:, 0]
     v = corners[:, 2] - corners[:, 0]
-    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # PARTS^2 for the whole triangle
+    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # LATTICE_STEPS^2 for the whole triangle
     _require_all(
         areas > 0,
         "a subtriangle has the orientation of its input triangle and an area "
@@ -197,7 +197,7 @@ def _check_cover(
     )
     covered = np.bincount(source, weights=areas, minlength=int(proper.max(initial=-1)) + 1)
     _require_all(
-        covered[proper] == PARTS**2,
+        covered[proper] == LATTICE_STEPS**2,
         "the areas of its subtriangles add up to that of the input triangle",
         proper,
     )
@@ -264,7 +264,7 @@ def _check_unmoved(
 ) -> None:
     is_near_split = np.zeros(len(positions), dtype=bool)
     is_near_split[refiner.edges[refiner.splits > 0]] = True
-    rows, slots = np.nonzero(places.parts == PARTS)
+    rows, slots = np.nonzero(places.parts == LATTICE_STEPS)
     vertex = places.vertices[rows, slots]
     given = positions[vertex].astype(np.float64)
     is_number = np.asarray(

@@ -28,7 +28,7 @@ from ..mesh.validation import (
 )
 from ..mesh.vectors import Vector, cross, plus, row_of, times, write_row
 from .frames import FRAME_NUMBERS
-from .patches import FRAMES, SmoothSurface, place_on
+from .patches import FRAME_COLUMN, SmoothSurface, place_on
 from .places import across_edges, has_area, nearest_places, settle
 
 
@@ -265,7 +265,7 @@ def turned_at(
     at = (u, v, w)
     q0 = x = y = z = stretch = 0.0
     for i in range(3):
-        column = FRAMES + FRAME_NUMBERS * i
+        column = FRAME_COLUMN + FRAME_NUMBERS * i
         q0 += at[i] * row[column]
         x += at[i] * row[column + 1]
         y += at[i] * row[column + 2]

@@ -40,13 +40,13 @@ from .frames import (
     sound_sectors,
 )
 
-POINTS = 10
+CONTROL_POINT_COUNT = 10
 """Control points of a patch: corners a, b, c; near a towards b and c; near b towards c and a; near
 c towards a and b; and the middle.
 """
-FRAMES = 3 * POINTS
+FRAME_COLUMN = 3 * CONTROL_POINT_COUNT
 """First column of the frames of a patch's corners; a frame is a quaternion and a stretch."""
-WIDTH = FRAMES + 3 * FRAME_NUMBERS
+COLUMN_COUNT = FRAME_COLUMN + 3 * FRAME_NUMBERS
 """Count of the numbers of a patch."""
 MOST_CARRIED = 0.5
 """Largest difference between a carried tangent and the tangent of the current mesh, relative to the
@@ -104,7 +104,7 @@ class SmoothSurface:
         self._axes = axes.copy()
         self._frames = np.zeros((len(used), FRAME_NUMBERS))
         self._tangents = np.zeros((len(directed_edges), 3))
-        self.rows = np.zeros((len(triangles), WIDTH))
+        self.rows = np.zeros((len(triangles), COLUMN_COUNT))
         """Control points and frames of each patch, shape (T, 45)."""
         self.move(rest)
 
@@ -259,7 +259,7 @@ def write_patches(
             for j in range(4):
                 along += frames[s, j] * frames[patches.sectors[t, 0], j]
             sign = -1.0 if along < 0.0 else 1.0  # a quaternion of either sign is the same rotation
-            column = FRAMES + FRAME_NUMBERS * i
+            column = FRAME_COLUMN + FRAME_NUMBERS * i
             for j in range(4):
                 rows[t, column + j] = sign * frames[s, j]
             rows[t, column + 4] = frames[s, 4]
@@ -285,7 +285,7 @@ def place_on(rows: Floats64, t: int, u: float, v: float, w: float) -> Vector:
         3.0 * ww * v,
         6.0 * u * v * w,
     )
-    for k in range(POINTS):
+    for k in range(CONTROL_POINT_COUNT):
         x += basis[k] * row[3 * k]
         y += basis[k] * row[3 * k + 1]
         z += basis[k] * row[3 * k + 2]

@@ -24,7 +24,7 @@ from .patches import SmoothSurface, place_on
 
 WRONG_SIDE = 10.0
 """Distance, in mean edge lengths, that is added for a triangle that faces the other way."""
-STEPS = 16
+MOST_STEPS = 16
 """Most steps of Newton's method; four are enough on most surfaces."""
 FARTHEST_RATIO = 1.25
 """Largest distance of a place, relative to the distance of the nearest place. Chosen: the place
@@ -35,7 +35,7 @@ ROUNDING = 1e-14
 """Steps in barycentric coordinates, and squared sines of angles, below this count as zero."""
 INSIDE, STUCK = 3, 4
 """Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
-UPRIGHT = 1e-12
+UPRIGHT_SINE = 1e-12
 """Largest part of the vector to the point across the normal, relative to its length."""
 
 
@@ -124,7 +124,7 @@ def slide(
         place[:] = weights[k]
         best[:] = place
         least = farthest = np.inf
-        for _ in range(STEPS):
+        for _ in range(MOST_STEPS):
             apart, aside = linearise(point, rows, normals, sectors, t, place, columns)
             size = dot(aside, aside)
             if farthest == np.inf:
@@ -133,7 +133,7 @@ def slide(
                 least = size
                 best_t = t
                 best[:] = place
-            if size <= (UPRIGHT * apart) ** 2:
+            if size <= (UPRIGHT_SINE * apart) ** 2:
                 break
             hit = advance(aside, columns, across, t, place)
             if hit == STUCK:

@@ -51,7 +51,7 @@ from .frame import FrameBuffers
 from .table import (
     CONFIGURATION_COUNT,
     MOST_SPLITS,
-    POINTS,
+    POINT_COORDINATES,
     Patterns,
     Triangle,
     splits_of,
@@ -189,7 +189,7 @@ def _best_continuations(
 
 def _length_of_inner_lines(sequence: Sequence) -> float:
     """Return twice the length of lines inside an equilateral triangle, plus its constant border."""
-    corners = POINTS[np.array(split_in_order(sequence))]
+    corners = POINT_COORDINATES[np.array(split_in_order(sequence))]
     u, v, w = np.moveaxis(corners - np.roll(corners, 1, axis=1), 2, 0)
     return float(np.sqrt(-(u * v + v * w + w * u)).sum())
 

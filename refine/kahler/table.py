@@ -91,8 +91,9 @@ def _point_coordinates() -> Integers64:
     return np.array(points)
 
 
-POINTS = _point_coordinates()
-_PLACES = [tuple(point) for point in POINTS.tolist()]  # the same in plain Python, faster for few
+POINT_COORDINATES = _point_coordinates()
+# The same in plain Python, which is faster for few points.
+_PLACES = [tuple(point) for point in POINT_COORDINATES.tolist()]
 
 
 def splits_of(configuration: int) -> tuple[int, int, int]:

@@ -31,7 +31,7 @@ def dense() -> FaceScene:
     mesh = Mesh(other.mesh.vertices, other.mesh.faces, colours=colours)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simplifying, "MOST_SIMULATED", 4000)
-        patch.setattr(simplifying, "SIMPLIFIED", 2500)
+        patch.setattr(simplifying, "SIMPLIFIED_COUNT", 2500)
         return FaceScene(fit(mesh, other.landmarks))
 
 
@@ -140,7 +140,7 @@ def test_lips_keep_their_own_vertices(dense):
 def test_lips_of_a_sealed_scan_part_without_strands(monkeypatch):
     """Lips that were one surface face the same way, but no vertex follows the other lip."""
     monkeypatch.setattr(simplifying, "MOST_SIMULATED", 4000)
-    monkeypatch.setattr(simplifying, "SIMPLIFIED", 2500)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED_COUNT", 2500)
     shut = sealed()
     mesh = halved(shut.mesh)
     rough = np.random.default_rng(2).normal(0.0, 0.3, mesh.vertices.shape)  # [mm]

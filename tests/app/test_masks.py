@@ -15,7 +15,7 @@ from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.assets.identities import MASKS, make_person, sample_identity, wearing
+from risorius.assets.identities import MASK_COLOURS, make_person, sample_identity, wearing
 
 SIZE = (160, 160)
 COVERED = {Segment.TOP_LIP, Segment.BOTTOM_LIP, Segment.MOUTH_INTERIOR}
@@ -66,7 +66,7 @@ def test_rows_of_the_table_choose_masks(tmp_path: Path):
     assert shot.known.labels["person"]["mask"] == "white"
     assert (shot.known.images["segmentation"] == Segment.FACE_WEAR).sum() > 300
     assert not any(shot.known.labels["landmarks"]["visible"][48:68])
-    assert set(MASKS) == {"blue", "white", "black"}
+    assert set(MASK_COLOURS) == {"blue", "white", "black"}
 
 
 @pytest.mark.parametrize(("number", "frame"), [(3, "round"), (12, "oval"), (19, "rectangular")])

@@ -307,7 +307,7 @@ def test_a_take_shows_how_far_sums_are_off(tmp_path, face):
 def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     """A mesh with too many triangles to simulate has shapes on all its own vertices."""
     monkeypatch.setattr(simplifying, "MOST_SIMULATED", 5000)
-    monkeypatch.setattr(simplifying, "SIMPLIFIED", 4000)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED_COUNT", 4000)
     fine = user_head(1)
     assert len(fine.mesh.faces) > 5000
     mesh, landmarks = fine.write(tmp_path)

@@ -16,7 +16,7 @@ from risorius.app.capture.captions import plate
 from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.panels import mechanism
 from risorius.app.viewer.settings import SKINS, Display
-from risorius.assets.identities import NAMED
+from risorius.assets.identities import NAMED_PERSONS
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -171,7 +171,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     click(viewer, "Person")
     people = [name for name in viewer.gui.places if name.startswith("Person: ")]
     assert {"Person: Ada, woman, about 25", "Person: Coarse head"} <= set(people)
-    assert len(people) == 2 + len(NAMED) + 20
+    assert len(people) == 2 + len(NAMED_PERSONS) + 20
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
     # The process has low priority, so others run first.

@@ -31,7 +31,7 @@ from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.assets.model import Segment
-from risorius.assets.pigments import SHIPPED
+from risorius.assets.pigments import SHIPPED_COMPLEXION
 from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
 
@@ -59,7 +59,7 @@ def skin_of(head, image):
 def test_own_tone_is_the_shipped_picture(head):
     """With the tone of the stored picture, the picture equals the file byte by byte."""
     tints = _tints()
-    angle = np.interp(-SHIPPED.melanin, -tints.melanins, tints.angles)
+    angle = np.interp(-SHIPPED_COMPLEXION.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
 
@@ -165,7 +165,7 @@ def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
     given = {"features": colours.features, "haired_as": colours.angle, "shrink": 2}
     usual = recoloured(colours.angle, **given)
     for rows in (37, 640):
-        monkeypatch.setattr(complexion, "BAND", rows)
+        monkeypatch.setattr(complexion, "BAND_ROWS", rows)
         assert (recoloured(colours.angle, **given) == usual).all()
 
 

@@ -15,7 +15,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import COARSE
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
 from risorius.assets.identities import (
-    NAMED,
+    NAMED_PERSONS,
     Person,
     Sex,
     make_person,
@@ -238,8 +238,8 @@ def test_upper_lids_cover_a_part_of_the_iris():
 @pytest.mark.slow
 def test_named_persons_are_different_people(head):
     """Named persons differ in sex, tone and age, and none has the built-in head's face."""
-    people = [person_called(name) for name in NAMED]
-    assert HEAD_NAMES == (*NAMED, COARSE)
+    people = [person_called(name) for name in NAMED_PERSONS]
+    assert HEAD_NAMES == (*NAMED_PERSONS, COARSE)
     assert {each.identity.sex for each in people} == set(Sex)
     assert np.ptp([each.identity.age for each in people]) > 30.0
     for i, each in enumerate(people):

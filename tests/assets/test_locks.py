@@ -10,7 +10,7 @@ from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
 from risorius.assets.identities import built_in_hair, person_called
-from risorius.assets.identities.locks import CORNERS, SHORT_HAIR, TIED_HAIR, locks_on
+from risorius.assets.identities.locks import SHORT_HAIR, TIED_HAIR, VERTEX_COUNT, locks_on
 from risorius.geometry.normals import cross_products
 from risorius.render import Style
 
@@ -34,18 +34,18 @@ def test_locks_are_sound_ribbons(growth):
     """The two corners of a station are equally far from its middle; a ribbon ends in a tip."""
     hair = built_in_hair(load("head"))[1]
     locks = locks_on(hair, growth)
-    assert len(locks.vertices) == CORNERS * growth.count
+    assert len(locks.vertices) == VERTEX_COUNT * growth.count
     for each in (locks.vertices, locks.normals, locks.colours, locks.striation):
         assert each.dtype == np.float32
         assert np.isfinite(each).all()
     assert 0.0 <= locks.colours.min() <= locks.colours.max() <= 1.0
     along, half = locks.striation[:, :3], locks.striation[:, 3:4]
     middles = locks.vertices - half * np.cross(locks.normals, along)
-    rows = middles.reshape(growth.count, CORNERS, 3)
+    rows = middles.reshape(growth.count, VERTEX_COUNT, 3)
     assert rows[:, 0:-1:2] == pytest.approx(rows[:, 1::2], abs=1e-4)
     lengths = np.linalg.norm(np.diff(rows[:, ::2], axis=1), axis=2).sum(axis=1)
     assert lengths.max() < 1.5 * growth.longest
-    assert (half.reshape(-1, CORNERS)[:, -1] == 0.0).all()
+    assert (half.reshape(-1, VERTEX_COUNT)[:, -1] == 0.0).all()
     outward = (cross_products(locks.vertices, locks.faces) * locks.normals[locks.faces[:, 0]]).sum(
         axis=1
     )
@@ -95,8 +95,8 @@ def test_locks_of_the_nape_lie_side_by_side(name):
     """
     parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
     locks = next(part for part in parts if part.name == "hair_locks")
-    roots = locks.vertices[::CORNERS]
-    directions = locks.striation[::CORNERS, :3]
+    roots = locks.vertices[::VERTEX_COUNT]
+    directions = locks.striation[::VERTEX_COUNT, :3]
     neighbours = cKDTree(roots).query(roots, k=9)[1]
     agreement = np.linalg.norm(directions[neighbours].mean(axis=1), axis=1)
     is_low = roots[:, 1] < np.percentile(roots[:, 1], 25.0)
@@ -135,7 +135,7 @@ def test_bobs_end_in_tips_and_not_in_teeth(number):
     ends = parts["hair"].vertices.reshape(strand_count, -1, 3)[:, -1]
     assert np.abs(np.diff(ends[10:-10, 1], 2)).max() < 2.5
     for name in ("hair_tips_locks", "hair_inside_tips_locks"):
-        tips = parts[name].vertices[CORNERS - 1 :: CORNERS]
+        tips = parts[name].vertices[VERTEX_COUNT - 1 :: VERTEX_COUNT]
         nearest = cKDTree(ends).query(tips)[1]
         off = tips[:, 1] - ends[nearest, 1]
         assert off.min() > -8.0

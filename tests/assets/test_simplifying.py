@@ -36,7 +36,7 @@ def with_body(head: Head) -> SkinPiece:
 
 def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkeypatch):
     """Vertices around the landmarks stay; the body is simplified, and stays connected."""
-    monkeypatch.setattr(simplifying, "SIMPLIFIED", 5000)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED_COUNT", 5000)
     assert len(with_body.faces) > 7000
     marks = head.vertices[head.landmarks]
     found = simplifying.simplified(with_body, marks)
@@ -52,7 +52,7 @@ def test_a_face_keeps_its_vertices_beside_a_body_of_many(with_body, head, monkey
 
 def test_a_dense_head_leaves_triangles_to_its_body(with_body, head, monkeypatch):
     """If the head alone exceeds the limit, head and body are simplified and stay connected."""
-    monkeypatch.setattr(simplifying, "SIMPLIFIED", 1800)
+    monkeypatch.setattr(simplifying, "SIMPLIFIED_COUNT", 1800)
     found = simplifying.simplified(with_body, head.vertices[head.landmarks])
     assert len(found.faces) <= 1800
     assert checks.component_count(found.faces) == 1

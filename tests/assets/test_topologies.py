@@ -12,7 +12,7 @@ from risorius import assets
 from risorius.assets.coarse import coarse_head
 from risorius.assets.data_files import read_toml
 from risorius.assets.fitting import fit_head
-from risorius.assets.fitting.landmark_file import COUNT, MisfitError, UnfinishedError
+from risorius.assets.fitting.landmark_file import LANDMARK_COUNT, MisfitError, UnfinishedError
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import Mesh
 
@@ -78,7 +78,7 @@ def test_the_table_is_sound():
     assert len(TABLE) >= 3
     for row in TABLE:
         fewest = min(vertices for vertices, _ in row["counts"])
-        assert len(set(row["landmarks"])) == COUNT and max(row["landmarks"]) < fewest
+        assert len(set(row["landmarks"])) == LANDMARK_COUNT and max(row["landmarks"]) < fewest
         for first, second, share in row.get("edges", ()):
             assert max(first, second) < fewest and 0.0 < share < 0.2
 
@@ -104,7 +104,7 @@ def test_edges_tell_meshes_of_the_same_counts_apart(tmp_path):
 def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
     """If a topology's landmarks do not fit a mesh, the error suggests marking the landmarks."""
     other = user_head()
-    write_topology(tmp_path / "config", other, landmarks=list(range(COUNT)))
+    write_topology(tmp_path / "config", other, landmarks=list(range(LANDMARK_COUNT)))
     mesh, marks = other.write(tmp_path)
     with pytest.raises(MisfitError, match=r"those of mine, .*; but .*; else mark") as raised:
         fit_head(mesh)
@@ -123,7 +123,7 @@ def test_a_known_head_that_cannot_be_fitted_may_be_marked(tmp_path):
 )
 def test_a_wrong_topology_is_one_line(tmp_path, change, message):
     """A wrong topology file is reported in one line: file, value, and allowed values."""
-    whole = {"counts": [[100, 200]], "landmarks": list(range(COUNT))}
+    whole = {"counts": [[100, 200]], "landmarks": list(range(LANDMARK_COUNT))}
     write_topology(tmp_path / "config", user_head(), **whole | change)
     with pytest.raises(assets.AssetError, match=message) as raised:
         recognised(user_head().mesh)

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from risorius.assets.identities import (
     COLLARS,
     FRAMES,
-    SHIRTS,
+    SHIRT_COLOURS,
     make_person,
     sample_identity,
     wearing,
@@ -62,7 +62,7 @@ def test_shirts_keep_their_shades(people):
             assert after.colours.mean() > before.colours.mean() + 0.3
     assert GLASSES not in {part.name for part in wearing(plain, shirt="blue").parts}
     assert {part.name for part in wearing(plain, shirt="red", frame="round").parts} >= {GLASSES}
-    assert len(SHIRTS) == 8
+    assert len(SHIRT_COLOURS) == 8
 
 
 def shirt_of(person):

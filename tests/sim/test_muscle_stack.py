@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
+from risorius.sim.fibres import FIBRE_POINTS, SAMPLE_COUNT, move_lines
 from tests.sim.poses import settled_displacement, without
 
 ABOVE = "zygomaticus_major"
@@ -80,7 +80,7 @@ def test_carrying_is_the_formula(simulation, model, state):
         for k in range(3):
             if active[c] > 0.0:
                 along = motion.contracted[c, :, k]
-                beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLES), along)
+                beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLE_COUNT), along)
             beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), carried[c, :, k])
         carried[b, p] += steady + stack.weight[row] * beneath
         shares[b, p] += stack.weight[row]

@@ -8,13 +8,13 @@ from numpy.linalg import norm
 
 from risorius import sim
 from risorius.sim.contact import Grip, watch_eyeballs
-from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
+from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLE_COUNT, contract
 from risorius.sim.landmarks import smoothstep
 from risorius.sim.lid_motion import turn_lids
 from risorius.sim.muscles import place_muscles
 from risorius.sim.rig import LinearMuscle, RingMuscle
 from risorius.sim.skin_model import Tick
-from risorius.sim.skull import REST
+from risorius.sim.skull import REST_MOTION
 from risorius.sim.state import State
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, substeps_in, tissue_forces
 from risorius.sim.tissue import carry
@@ -81,7 +81,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
             x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
         )
         before = mine.v.copy()
-        hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST))
+        hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST_MOTION))
         i = lips.vertex[pair]
         (a, b) = lips.beside[pair]
         w = lips.weight[pair]
@@ -224,7 +224,7 @@ def test_fibres_contract_along_their_own_arc(stirred, model, state):
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(state.lines.contracted)
     assert bundle.fixed_at.max() > 0.0
-    t = np.linspace(0.0, 1.0, SAMPLES)
+    t = np.linspace(0.0, 1.0, SAMPLE_COUNT)
     for b in range(1, len(bundle.muscle)):
         points = bundle.points[b]
         moved = points + bundle.mandible[b][:, None] * mandible.displacements(points)
@@ -268,7 +268,7 @@ def test_muscle_pull(stirred, model, state):
     ridden = np.where(motion.is_carried, tight[of_line], 0.0)
     assert ridden.any()
     for attached, table, scale, last in (
-        (skin.pulls, motion.contracted, pulled, SAMPLES - 2),
+        (skin.pulls, motion.contracted, pulled, SAMPLE_COUNT - 2),
         (skin.carries, motion.carried, ridden, FIBRE_POINTS - 2),
     ):
         line = np.repeat(np.arange(len(table)), np.diff(attached.rows))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from risorius import assets
 from risorius.assets.fitting.landmark_file import MisfitError, UnfinishedError
-from risorius.assets.meshes import FORMATS
+from risorius.assets.meshes import MESH_FORMATS
 
 from ...errors import UserError
 from ...light_maps import LIGHT_SUFFIXES, check_light_map, open_light
@@ -22,7 +22,7 @@ from ..settings import Settings
 from .file_dialogs import FileDialogs
 from .scripts import SOUND_SUFFIXES, ScriptCommands
 
-MESH_SUFFIXES = tuple(f".{name}" for name in FORMATS)
+MESH_SUFFIXES = tuple(f".{name}" for name in MESH_FORMATS)
 LANDMARKS_SUFFIX = ".json"
 SUFFIXES = {"mesh": MESH_SUFFIXES, "sound": SOUND_SUFFIXES, "light": LIGHT_SUFFIXES}
 

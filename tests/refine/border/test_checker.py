@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.refine.border.checker import PARTS
+from risorius.refine.border.checker import LATTICE_STEPS
 from tests import meshes
 from tests.refine.cases import kahler
 
@@ -243,14 +243,14 @@ def test_points_anywhere(place, inside):
 @pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
 def test_single_precision_is_forgiven(place):
     """Weights of whole parts with rounding errors still mean the same place."""
-    assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
+    assert (place * LATTICE_STEPS) % 1.0 == pytest.approx(0.0, abs=1e-9)
     refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_places_apart_are_cracks(place):
     """An edge cut at two different places, however near, is a crack."""
-    refiner, refined, rest = cut_at((place, place + 2.0 / PARTS), INSIDE[0])
+    refiner, refined, rest = cut_at((place, place + 2.0 / LATTICE_STEPS), INSIDE[0])
     check_breaks("no crack, no T-junction", refiner, refined, rest)
 
 

@@ -48,7 +48,7 @@ def test_entries(length):
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
         configuration = configuration_of(splits)
         assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
-        areas = np.linalg.det(table.POINTS[triangles] / 4.0)
+        areas = np.linalg.det(table.POINT_COORDINATES[triangles] / 4.0)
         assert (areas > 0.01).all()
         assert areas.sum() == approx(1.0, abs=1e-12)
 
@@ -110,7 +110,7 @@ CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 
 def length_of_lines(state):
     """Total length of the inner lines of a sequence."""
-    places = table.POINTS / 4.0 @ CORNERS
+    places = table.POINT_COORDINATES / 4.0 @ CORNERS
     return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
 
 
