@@ -18,10 +18,10 @@ from .errors import UserError
 from .extras import optional_import
 from .stopping import cleaned_up_if_stopped
 from .text import in_one_line
-from .workers import ATTEMPTS, WorkerPool, share_of_cores
+from .workers import MOST_ATTEMPTS, WorkerPool, share_of_cores
 
-PATIENCE = 10.0  # [s] for the scheduler to answer
-LOSSES = 10  # an item fails when Dask has lost its workers so many times
+SCHEDULER_TIMEOUT = 10.0  # [s] for the scheduler to answer
+MOST_LOSSES = 10  # an item fails when Dask has lost its workers so many times
 
 _pools: dict[str, WorkerPool] = {}
 """In a Dask worker: the processes of each run."""
@@ -55,8 +55,8 @@ def _client(distributed: Any, scheduler: str) -> Any:
     """Connect to the scheduler at an address; raise UserError if no scheduler answers."""
     try:  # tested first: a client takes half a minute to notice a missing scheduler
         host_and_port = distributed.comm.get_address_host_port(scheduler)
-        socket.create_connection(host_and_port, PATIENCE).close()
-        return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        socket.create_connection(host_and_port, SCHEDULER_TIMEOUT).close()
+        return distributed.Client(scheduler, timeout=SCHEDULER_TIMEOUT, set_as_default=False)
     except (OSError, TimeoutError, ValueError, OverflowError) as error:
         why = getattr(error, "strerror", None) or error or "it does not speak Dask's protocol"
         raise UserError(
@@ -70,7 +70,7 @@ def _results(
 ) -> Iterator[tuple[Any, Any, str]]:
     """Yield results in the form of `run_on_cluster`."""
     losses = Counter[int]()
-    futures = client.map(do, items, pure=False, retries=ATTEMPTS - 1)
+    futures = client.map(do, items, pure=False, retries=MOST_ATTEMPTS - 1)
     number_of = {future.key: number for number, future in enumerate(futures)}
     ended = distributed.as_completed(
         futures, loop=client.loop, with_results=True, raise_errors=False
@@ -84,8 +84,8 @@ def _results(
             continue
         error = future.exception()
         losses[number] += 1
-        if isinstance(error, distributed.KilledWorker) and losses[number] < LOSSES:
-            again = client.submit(do, items[number], pure=False, retries=ATTEMPTS - 1)
+        if isinstance(error, distributed.KilledWorker) and losses[number] < MOST_LOSSES:
+            again = client.submit(do, items[number], pure=False, retries=MOST_ATTEMPTS - 1)
             number_of[again.key] = number
             ended.add(again)
         else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-LEAD = 0.047  # [s] by which simulated muscles and skin lag behind their controls
+LEAD_TIME = 0.047  # [s] by which simulated muscles and skin lag behind their controls
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,6 @@ class Playback:
     neutral: str | None = None
     gains: tuple[str, ...] = ()
     mirror: bool = False
-    lead: float = LEAD
+    lead: float = LEAD_TIME
     face: str | None = None
     rate: float | None = None

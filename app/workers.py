@@ -30,8 +30,8 @@ from .stopping import cleaned_up_if_stopped, handle_signals
 from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work
-ATTEMPTS = 3  # number of attempts at a piece of work whose process dies
-GRACE = 5.0  # [s] for a process to clean up before it is killed
+MOST_ATTEMPTS = 3  # number of attempts at a piece of work whose process dies
+GRACE_TIME = 5.0  # [s] for a process to clean up before it is killed
 
 
 class Kind(Enum):
@@ -104,7 +104,7 @@ class Worker:
     def close(self) -> None:
         """Wait until the process ends, and kill it if necessary."""
         try:
-            self.process.wait(GRACE)
+            self.process.wait(GRACE_TIME)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
@@ -177,7 +177,7 @@ class WorkerPool:
         *arguments: Any,
         on_message: Callable[[Any], object] = lambda _: None,
         log: Path | None = None,
-        attempts: int = ATTEMPTS,
+        attempts: int = MOST_ATTEMPTS,
     ) -> None:
         """Do work in a process, and again if the process dies.
 

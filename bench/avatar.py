@@ -36,7 +36,7 @@ from .report import Target, at_least, processor, table
 from .subjects import Scans
 
 Points = npt.NDArray[np.floating]
-PERSON = 7
+PERSON_NUMBER = 7
 
 
 class HeadFile(NamedTuple):
@@ -93,7 +93,7 @@ def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
     """
     avatar_of(None, _request(), _quiet)  # compilation is not timed
     yield measured(None)
-    yield measured(person_called(PERSON), f"person {PERSON}")
+    yield measured(person_called(PERSON_NUMBER), f"person {PERSON_NUMBER}")
     if folder is not None:
         yield measured_file(makehuman(folder))
     if reference is not None:

@@ -30,7 +30,7 @@ Faces = npt.NDArray[np.int32]
 Surface = tuple[Points, Faces]
 Map = Callable[[Points], Points]
 
-ROUNDS = 20  # rounds of timing a frame
+ROUND_COUNT = 20  # rounds of timing a frame
 
 
 class Row(NamedTuple):
@@ -188,7 +188,7 @@ def targets(rows: list[Row]) -> list[Target]:
 
 def _milliseconds(embedding: refine.Embedding, positions: Points) -> float:
     times = []
-    for _ in range(ROUNDS):
+    for _ in range(ROUND_COUNT):
         start = time.perf_counter()
         embedding.evaluate(positions)
         times.append(time.perf_counter() - start)

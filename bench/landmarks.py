@@ -42,7 +42,21 @@ Detector = Callable[[Image], Floats64 | None]
 
 DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
 # The points of the face's right side.
-RIGHT = {*range(8), *range(17, 22), 31, 32, *range(36, 42), 48, 49, 50, 58, 59, 60, 61, 67}
+RIGHT_LANDMARKS = {
+    *range(8),
+    *range(17, 22),
+    31,
+    32,
+    *range(36, 42),
+    48,
+    49,
+    50,
+    58,
+    59,
+    60,
+    61,
+    67,
+}
 MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures
 MOST_CONSTANT = 1.5  # percent, of any point
 MOST_YAW = 10.0  # [degrees]; heads of frontal pictures turn less
@@ -264,7 +278,7 @@ def report(finding: Finding) -> str:
     offsets = [
         (f"{MIRRORED[number]}, {number}" if MIRRORED[number] != number else str(number), *offset)
         for number, offset in enumerate(finding.constant)
-        if number not in RIGHT and np.hypot(*offset) > MOST_CONSTANT
+        if number not in RIGHT_LANDMARKS and np.hypot(*offset) > MOST_CONSTANT
     ]
     lines = [
         f"{finding.picture_count} pictures; {DETECTORS[finding.detector]} finds a face in "

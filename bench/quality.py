@@ -7,7 +7,7 @@ mesh is refined by all methods of METHODS, and three errors are reported:
     distance   RMS distance from every dense vertex to the exactly nearest point of the refined mesh
     picture    RMS difference in grey levels from pictures of the dense mesh. Both meshes are drawn
                from VIEWS as plain clay without texture or shadows, shaded by the mesh's normals
-    outline    pixels that only one of the two meshes covers. Pictures are drawn FINER times
+    outline    pixels that only one of the two meshes covers. Pictures are drawn SUPERSAMPLING times
                larger, so that an error of a fraction of a pixel counts as this fraction
 
 Edges are split by the paper's criterion `normal`, or by `displacement`, which splits the edges that
@@ -40,10 +40,10 @@ Mesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
 
 SIZE = 480  # width and height of a picture [pixels]
-FINER = 2
+SUPERSAMPLING = 2
 VIEWS = ("front", "three-quarter", "profile")
 STATIC = "static"
-BEST = "cubic displacement 2x"
+BEST_METHOD = "cubic displacement 2x"
 _PRESET = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
 
 
@@ -54,7 +54,7 @@ def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
 METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     STATIC: ("none", {}),
     "loop normal 2x": _sliding("loop", criterion=refine.NormalDrop),
-    BEST: _sliding("cubic", blend=False),
+    BEST_METHOD: _sliding("cubic", blend=False),
     "cubic displacement, blended 2x": _sliding("cubic", blend=True),
     "detail displacement 2x": _sliding("detail", blend=False),
     "detail displacement, blended 2x": _sliding("detail", blend=True),
@@ -110,7 +110,7 @@ def measure(
     shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
     cameras = [render.OrbitCamera.framing(shown, view=view) for view in VIEWS]
     bound = {title: _bound(subject, *METHODS[title]) for title in methods}
-    with Canvas((SIZE * FINER, SIZE * FINER), samples=0) as canvas:
+    with Canvas((SIZE * SUPERSAMPLING, SIZE * SUPERSAMPLING), samples=0) as canvas:
         for name in expressions or subject.poses:
             progress(name)
             pose = subject.poses[name]
@@ -175,7 +175,7 @@ def _grey_pictures(
 ) -> tuple[Points, Flags]:
     """Grey levels over the background (views, SIZE, SIZE), and flags of covered fine pixels.
 
-    The flags have shape (views, FINER * SIZE, FINER * SIZE).
+    The flags have shape (views, S, S), where S = SUPERSAMPLING * SIZE.
     """
     on_black = replace(CLAY, bumps=0.0, background=render.BLACK)
     drawings = [Drawing(camera, on_black) for camera in cameras]
@@ -191,13 +191,13 @@ def _differences(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tu
     (grey, covered) = shots
     (true_grey, true_covered) = truth
     either = _block_means(covered | true_covered) > 0.0
-    wrong = np.count_nonzero(covered != true_covered) / FINER**2 / len(VIEWS)
+    wrong = np.count_nonzero(covered != true_covered) / SUPERSAMPLING**2 / len(VIEWS)
     return float(np.sqrt(((grey - true_grey)[either] ** 2).mean())), wrong
 
 
 def _block_means(fine: npt.NDArray[Any]) -> Points:
     """Average the fine pixels of each pixel."""
-    return np.asarray(fine.reshape(-1, SIZE, FINER, SIZE, FINER).mean(axis=(2, 4)))
+    return np.asarray(fine.reshape(-1, SIZE, SUPERSAMPLING, SIZE, SUPERSAMPLING).mean(axis=(2, 4)))
 
 
 def means(scores: Sequence[Score]) -> dict[str, Score]:
@@ -242,7 +242,7 @@ def targets(scores: Sequence[Score]) -> list[Target]:
     """The targets of the scheme `cubic` with `displacement`, at twice the triangles."""
     average = means(scores)
     names = ("distance", "picture")
-    gains = {name: _gain(average[BEST], average[STATIC], name) for name in names}
+    gains = {name: _gain(average[BEST_METHOD], average[STATIC], name) for name in names}
     least_gain = 20.0  # [%] of the error of static
     return [
         at_least(f"{name}: less than static", gain, least_gain, " %")

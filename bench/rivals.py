@@ -103,7 +103,7 @@ _BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
     "cubic, all edges": partial(_everywhere, scheme="cubic"),
     "Loop, all edges": partial(_everywhere, scheme="loop"),
 }
-OURS: Sequence[Method] = tuple(
+OWN_METHODS: Sequence[Method] = tuple(
     Method(f"risorius, {title}", "risorius", "risorius.refine", bind, bind is _adaptive)
     for title, bind in _BINDINGS.items()
 )
@@ -135,7 +135,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
 
 def available() -> tuple[list[Method], list[str]]:
     """Our methods, the methods of installed libraries, and a line for each missing library."""
-    found = list(OURS)
+    found = list(OWN_METHODS)
     skipped = {}
     for method in METHODS:
         try:

@@ -29,7 +29,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.control_names import split_side, twin_of
 from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
-from risorius.app.motion import SETTLING
+from risorius.app.motion import SETTLING_TIME
 from risorius.app.pictures import Image
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
@@ -129,7 +129,7 @@ def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> S
     scene = studio.scene
     scene.reset()
     scene.pose(dict.fromkeys(controls, 1.0))
-    scene.step(SETTLING)
+    scene.step(SETTLING_TIME)
     found = []
     for view in VIEWS:
         studio.camera = camera_for(scene, view)

@@ -16,7 +16,8 @@ from tqdm import tqdm
 from .geometry.arrays import Integers64
 from .refine import View, WeldedRefiner, splits_of_clip
 
-SOURCE = "vtkOriginalCellIds"  # name in PyVista's filters for the cell from which a cell was made
+# The name in PyVista's filters for the cell from which a cell was made.
+SOURCE_ARRAY = "vtkOriginalCellIds"
 
 
 class PolyDataRefiner:
@@ -72,7 +73,7 @@ class PolyDataRefiner:
             refined.cell_data[name] = np.asarray(array)[cells]
         for name, array in given.field_data.items():
             refined.field_data[name] = array
-        refined.cell_data[SOURCE] = cells
+        refined.cell_data[SOURCE_ARRAY] = cells
         refined.point_data[self.NORMALS] = mesh.normals.copy()
         refined.point_data.active_normals_name = self.NORMALS
         texture = given.point_data.active_texture_coordinates_name
@@ -206,10 +207,10 @@ def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Integers64, I
     uncut.points = points
     arrays: Any = starts, polygons.points[is_of_large]  # PyVista's types ask for arrays of `int`
     uncut.SetPolys(pyvista.CellArray.from_arrays(*arrays))
-    uncut.cell_data[SOURCE] = large
+    uncut.cell_data[SOURCE_ARRAY] = large
     cut = uncut.triangulate()
     triangles = _cells_of(cut.GetPolys(), cut.n_points).points.reshape(-1, 3)
-    polygon_of = np.asarray(cut.cell_data[SOURCE])
+    polygon_of = np.asarray(cut.cell_data[SOURCE_ARRAY])
     # If points lie on one line, VTK leaves triangles out, and their neighbours would have a hole.
     counts = np.bincount(polygon_of, minlength=len(polygons.sizes))
     is_short = np.zeros(len(polygons.sizes), dtype=np.bool_)

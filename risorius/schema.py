@@ -49,9 +49,9 @@ MUST_BE = {
     "tuple_type": "a list",
 }
 LENIENT = "unknown keys are ignored"  # for files of other versions
-ADDED = "("  # readers add keys that begin with this; no file has them
-REST_KEY = f"{ADDED}rest)"
-HIDDEN_KEY = f"{ADDED}hidden)"
+ADDED_START = "("  # readers add keys that begin with this; no file has them
+REST_KEY = f"{ADDED_START}rest)"
+HIDDEN_KEY = f"{ADDED_START}hidden)"
 
 
 class Record:
@@ -160,13 +160,15 @@ class Kinds:
         """A choice by the key `kind`, which is not a field of the records."""
         return core_schema.tagged_union_schema(
             {
-                ADDED + name: core_schema.no_info_before_validator_function(
+                ADDED_START + name: core_schema.no_info_before_validator_function(
                     lambda table: {key: table[key] for key in table if key != "kind"},
                     handler.generate_schema(record),
                 )
                 for name, record in self.records.items()
             },
-            lambda table: f"{ADDED}{table.get('kind')}" if isinstance(table, Mapping) else None,
+            lambda table: (
+                f"{ADDED_START}{table.get('kind')}" if isinstance(table, Mapping) else None
+            ),
             custom_error_type="must_be",
             custom_error_message=f"a table whose 'kind' is one of {', '.join(self.records)}",
         )
@@ -272,13 +274,13 @@ def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> 
     """Move unknown keys of a table to the `Rest` field; raises ValueError if there is none."""
     if not isinstance(table, Mapping):
         return table
-    plain = [key for key in known if not key.startswith(ADDED)]
+    plain = [key for key in known if not key.startswith(ADDED_START)]
     found = {key: value for key, value in table.items() if key in plain}
     others = {key: value for key, value in table.items() if key not in plain}
     if REST_KEY in known:
         return {**found, REST_KEY: {str(key): value for key, value in others.items()}}
     for key in () if info.context is LENIENT else others:
-        allowed = ", ".join(each for each in known if not each.startswith(ADDED))
+        allowed = ", ".join(each for each in known if not each.startswith(ADDED_START))
         raise ValueError(
             f"unknown key {quoted(key)}{question(key, known) or '.'} Allowed: {allowed}"
         )
@@ -291,7 +293,7 @@ def _line(where: str, problem: ErrorDetails) -> str:
     for key in problem["loc"]:
         if isinstance(key, int):
             place += f" {key + 1}"
-        elif not key.startswith(ADDED) and key != "[key]":
+        elif not key.startswith(ADDED_START) and key != "[key]":
             place += f", {quoted(key)}"
     place = place.removeprefix(", ")
     kind = problem["type"]
@@ -306,7 +308,7 @@ def _line(where: str, problem: ErrorDetails) -> str:
 
 def _without_entry(document: Any, place: Sequence[int | str]) -> Any:
     """A table without the entry at this place, which may be in a nested table."""
-    keys = [key for key in place if not str(key).startswith(ADDED)]
+    keys = [key for key in place if not str(key).startswith(ADDED_START)]
     if not isinstance(document, Mapping) or not keys or keys[0] not in document:
         return {}
     left = dict(document)

@@ -22,7 +22,7 @@ from ..scenes.openings import opening_before
 from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
-SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
+SIDE_SIGNS = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
 OPACITY = 0.25  # default opacity of the skin
 SOFT_PARTS = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
 OUTER_HAIR = (HAIR, HAIR + "_tied")
@@ -93,7 +93,7 @@ class Anatomy:
             for part in self._structures(face, view)
         ]
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT_PARTS, HAIR))]
-        openings = self._openings() if SIDES[view.side] else {}
+        openings = self._openings() if SIDE_SIGNS[view.side] else {}
         others = [
             place(half, bones, throws_shadow=not part.strand_radius, opening=opening)
             for part in (*stay, *self._mouth_linings(view))
@@ -133,12 +133,12 @@ class Anatomy:
 
     def _mouth_linings(self, view: AnatomyView) -> list[HeadPart]:
         """Return the parts that line the mouth, if they can be seen."""
-        is_seen = "muscles" in view.structures or SIDES[view.side]
+        is_seen = "muscles" in view.structures or SIDE_SIGNS[view.side]
         return [part for part in self._scene.parts if is_seen and part.name.startswith(SOFT_PARTS)]
 
     def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[BentPart]:
         """Return the hair on the opaque side; none if both sides are translucent."""
-        side = SIDES[view.side]
+        side = SIDE_SIGNS[view.side]
         parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
         return [self._half(face, part, side) for part in parts]
 
@@ -170,7 +170,7 @@ class Anatomy:
         opening = openings.get(opening_before(part.name, part.bone))
         if opening is None:
             return [(part, None)]
-        side = SIDES[view.side]
+        side = SIDE_SIGNS[view.side]
         lit = self._half(face, part, side), opening
         halves: list[tuple[HeadPart, render.Opening | None]] = [lit]
         if "muscles" in view.structures or not part.name.startswith(SOFT_PARTS):
@@ -185,7 +185,7 @@ def _middle(face: Face) -> Any:
 
 def _cut(face: Face, view: AnatomyView) -> render.Plane | None:
     """Return the plane in front of which skin is opaque; None if both sides are translucent."""
-    side = SIDES[view.side]
+    side = SIDE_SIGNS[view.side]
     if not side:
         return None
     bone = face.bone_transforms()["cranium"]

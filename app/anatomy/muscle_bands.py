@@ -23,26 +23,29 @@ from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Face
 
-ROWS = 22  # places along a band
-AROUND = 12  # places around a band's cross section
+ROW_COUNT = 22  # places along a band
+SECTION_POINTS = 12  # places around a band's cross section
 RELAXED_COLOUR = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED_COLOUR = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON_COLOUR = np.array([0.93, 0.87, 0.77])
-EYE = ((5.0, 9.0), (12.5, 9.0))
-MOUTH = ((1.0, 8.0), (7.5, 8.0))
-LIPS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))  # landmarks of the lips' edges
-RINGS = (  # beginning and end of names; landmarks; for each band, distance outward and width [mm]
-    ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE),
-    ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE),
-    ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE),
-    ("orbicularis_oculi", "left", (45, 46, 47, 42), EYE),
-    *(("orbicularis_oris", "", lip, MOUTH) for lip in LIPS),
+# For each band around an eye or the mouth: distance outward and width [mm].
+EYE_BANDS = ((5.0, 9.0), (12.5, 9.0))
+MOUTH_BANDS = ((1.0, 8.0), (7.5, 8.0))
+# The edges of the upper and the lower lip.
+LIP_LANDMARKS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))
+# Beginning and end of names; landmarks; bands.
+SPHINCTERS = (
+    ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE_BANDS),
+    ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE_BANDS),
+    ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE_BANDS),
+    ("orbicularis_oculi", "left", (45, 46, 47, 42), EYE_BANDS),
+    *(("orbicularis_oris", "", lip, MOUTH_BANDS) for lip in LIP_LANDMARKS),
 )
-ALONG = np.linspace(0.0, 1.0, ROWS)
-ARCH = np.sin(np.pi * ALONG)  # 1 in the middle
-END = np.sqrt(np.clip(1.0 - (2.0 * ALONG - 1.0) ** 8, 0.0, 1.0))  # round
-NEIGHBOURS = 8  # number of vertices that determine the place of the skin
-AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  # landmarks
+FRACTIONS = np.linspace(0.0, 1.0, ROW_COUNT)  # of a band's length, at its rows
+BELLY_PROFILE = np.sin(np.pi * FRACTIONS)  # 1 in the middle
+WIDTH_PROFILE = np.sqrt(np.clip(1.0 - (2.0 * FRACTIONS - 1.0) ** 8, 0.0, 1.0))  # round
+NEIGHBOUR_COUNT = 8  # number of vertices that determine the place of the skin
+LANDMARKS_AROUND = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}
 
 
 @dataclass(eq=False)
@@ -93,23 +96,23 @@ class Muscles:
                 self.names.append((name, number))
                 # Muscle takes half of the rig's width. Bands are 4 to 17 mm wide.
                 width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
-                widths.append(np.clip(width, 4.0, 17.0) * END)
+                widths.append(np.clip(width, 4.0, 17.0) * WIDTH_PROFILE)
                 lines.append(visible)
                 bones.append(row.get("bone", "cranium"))
         self._is_mandible = np.array([bone == "mandible" for bone in bones])
         rings = list[Floats64]()
         # The controls that move each band.
         self._controls: list[list[str]] = [[name] for name, _ in self.names]
-        for start, end, numbers, bands in RINGS:
+        for start, end, numbers, bands in SPHINCTERS:
             edge = _resampled(marks[None, list(numbers)])[0]
-            red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROWS, np.inf)
-            middle = marks[AROUND_OF[end]].mean(axis=0)
+            red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROW_COUNT, np.inf)
+            middle = marks[LANDMARKS_AROUND[end]].mean(axis=0)
             away = unit_vectors((edge - middle) * (1.0, 1.0, 0.0))
             names = simulation.controls.sums
             own = [name for name in names if name.startswith(start) and name.endswith(end)]
             for outward, width in bands:
                 rings.append(edge + outward * away)
-                widths.append(np.minimum(width * END, 2.0 * (outward + 0.06 * red**2)))
+                widths.append(np.minimum(width * WIDTH_PROFILE, 2.0 * (outward + 0.06 * red**2)))
                 self._controls.append(own)
         self._width = np.array(widths)
         looks_from = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
@@ -124,14 +127,15 @@ class Muscles:
         self._lay_out()
 
     def _place(self, skin: _Skin, lines: Floats64) -> None:
-        """Place bands along `lines` (b, ROWS, 3) between resting skin and bone, and bind them."""
+        """Place bands along lines (b, ROW_COUNT, 3) between resting skin and bone; bind them."""
         for _ in range(2):
             outside, normal, depth = skin.at(lines)
             lines = lines - outside[..., None] * normal
         thick = _thickness(np.ones((len(lines), 1)))
         end_depth = 3.4  # [mm] below the skin, at the end of a band
         start_depth = depth[:, :1]
-        deep = start_depth + (end_depth - start_depth) * ALONG * ALONG * (3.0 - 2.0 * ALONG)
+        deepening = FRACTIONS * FRACTIONS * (3.0 - 2.0 * FRACTIONS)
+        deep = start_depth + (end_depth - start_depth) * deepening
         deep[len(self.names) :] = end_depth  # sphincters do not begin on a bone
         side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
         to_edge = 0.5 * self._width[..., None] * side
@@ -155,7 +159,7 @@ class Muscles:
         self._shift = rails + self._below * self._facing - x
 
     def _moved(self, face: Face) -> tuple[Floats64, Floats64]:
-        """Return current edges and middle lines of bands, and outward directions, (3, b, ROWS, 3).
+        """Return edges and middle lines of bands, and outward directions, (3, b, ROW_COUNT, 3).
 
         A band's origin moves with its bone, and its insertion with the skin.
         """
@@ -170,7 +174,7 @@ class Muscles:
         for name, own in (("cranium", ~self._is_mandible), ("mandible", self._is_mandible)):
             bands = np.flatnonzero(own)
             turn = bones[name][:3, :3].T
-            fraction = ALONG[:, None]
+            fraction = FRACTIONS[:, None]
             fixed = self._rest[:, bands] @ turn + bones[name][:3, 3]
             rails[:, bands] = fixed + fraction * (rails[:, bands] - fixed)
             out = self._outward[:, bands] @ turn
@@ -189,7 +193,7 @@ class Muscles:
         """Update shape and colours from the face's current state."""
         rails, normal = self._moved(face)
         swollen = np.clip(self._length / _lengths(rails[1]), 0.75, 2.2)
-        swollen = 1.0 + (swollen[:, None] - 1.0) * ARCH
+        swollen = 1.0 + (swollen[:, None] - 1.0) * BELLY_PROFILE
         rails = rails[1] + swollen[..., None] ** 0.35 * (rails - rails[1])
         thick = _thickness(swollen)
         grid = _sections(rails, normal, thick)
@@ -198,15 +202,18 @@ class Muscles:
         self._set_shape(grid, np.array(active))
 
     def _set_shape(self, grid: Floats64, active: Floats64) -> None:
-        """Set the shape to sections (b, ROWS, AROUND, 3) of bands with activations (b,)."""
+        """Set the shape and the colours.
+
+        grid: sections of bands, (b, ROW_COUNT, SECTION_POINTS, 3). active: activations, (b,).
+        """
         change = CONTRACTED_COLOUR - RELAXED_COLOUR
         red = RELAXED_COLOUR + np.clip(active, 0.0, 1.0)[:, None] * change
         # Share of tendon in the colour: large at both ends of a band.
-        tendon = np.clip(1.4 - np.minimum(ALONG, 1.0 - ALONG) / 0.14, 0.0, 0.92)
+        tendon = np.clip(1.4 - np.minimum(FRACTIONS, 1.0 - FRACTIONS) / 0.14, 0.0, 0.92)
         fraction = np.tile(tendon, (len(grid), 1))
         fraction[len(self.names) :] = 0.0
         colour = red[:, None] + fraction[..., None] * (TENDON_COLOUR - red[:, None])
-        angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+        angle = 2.0 * np.pi * np.arange(SECTION_POINTS) / SECTION_POINTS
         light = 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
         colours = colour[:, :, None] * light[:, None]
         along = np.gradient(grid, axis=1)
@@ -222,7 +229,8 @@ class Muscles:
     def _lay_out(self) -> None:
         """Set the faces, and the places of the striation."""
         count = len(self._width)
-        number = np.arange(count * ROWS * AROUND).reshape(count, ROWS, AROUND)
+        shape = (count, ROW_COUNT, SECTION_POINTS)
+        number = np.arange(np.prod(shape)).reshape(shape)
         here = number[:, :-1]
         ahead = number[:, 1:]
         beside_here = np.roll(here, -1, axis=2)
@@ -231,11 +239,11 @@ class Muscles:
         second = np.stack([here, beside_ahead, beside_here], axis=-1)
         faces = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
         self.faces = faces.astype(np.int32)
-        a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
+        a = np.cos(2.0 * np.pi * np.arange(SECTION_POINTS) / SECTION_POINTS)
         # Each band uses a different part of the pattern, 40 mm apart.
         start = 40.0 * np.arange(count)[:, None, None]
         across = start + 0.5 * self._width.max(axis=1)[:, None, None] * a
-        along = self._length[:, None, None] * ALONG[:, None]
+        along = self._length[:, None, None] * FRACTIONS[:, None]
         both = np.broadcast_arrays(across, along)
         self.striation = np.stack(both, axis=-1).reshape(-1, 2).astype(np.float32)
 
@@ -266,9 +274,10 @@ class _Skin:
         return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
 
     def heights(self, points: Floats64, out: Floats64) -> Floats64:
-        """Return the heights of sections (b, ROWS, AROUND, 3) above the nearest triangles.
+        """Return the heights of points above the nearest triangles.
 
-        out: outward directions of the bands, (b, ROWS, 3), which the triangles face.
+        points: sections of bands, (b, ROW_COUNT, SECTION_POINTS, 3).
+        out: outward directions of the bands, (b, ROW_COUNT, 3), which the triangles face.
         """
         facing = np.broadcast_to(out[:, :, None], points.shape).reshape(-1, 3)
         other_side = 20.0  # [mm] added to the distance of a triangle that faces the other way
@@ -279,22 +288,24 @@ class _Skin:
         return height.reshape(points.shape[:-1])
 
     def _nearest(
-        self, points: Floats64, out: Floats64, count: int = NEIGHBOURS, reach: float = 0.35
+        self, points: Floats64, out: Floats64, count: int = NEIGHBOUR_COUNT, reach: float = 0.35
     ) -> tuple[Any, Floats64]:
         """Return the `count` vertices nearest to points, and their weights, (..., count) each."""
         away, near = self._tree.query(points, k=count)
         is_faced = np.einsum("...kc,...c->...k", self.normals[near], out) > 0.0
-        scale = reach * np.maximum(away[..., NEIGHBOURS - 1 : NEIGHBOURS] ** 2, 1e-30)
+        scale = reach * np.maximum(away[..., NEIGHBOUR_COUNT - 1 : NEIGHBOUR_COUNT] ** 2, 1e-30)
         return near, 1e-9 + is_faced * np.exp(-(away**2) / scale)
 
     def carriers(self, points: Floats64, out: Floats64) -> Any:
         """Return weights of vertices that carry the skin over bands, a sparse matrix (n, V).
 
-        points, out: places and outward directions over edges and middles, (3, b, ROWS, 3). Where
-        the mouth is closed, both lips have vertices near a point. A vertex carries a point only if
-        the path along the skin from the band's middle is not much longer than the straight line.
+        points, out: places and outward directions over edges and middles, (3, b, ROW_COUNT, 3).
+
+        Where the mouth is closed, both lips have vertices near a point. A vertex carries a point
+        only if the path along the skin from the band's middle is not much longer than the straight
+        line.
         """
-        near, weight = self._nearest(points, out, 3 * NEIGHBOURS, 1.0)
+        near, weight = self._nearest(points, out, 3 * NEIGHBOUR_COUNT, 1.0)
         first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
         starts, number = np.unique(first, return_inverse=True)
         path_length = path_lengths(self.x, self._faces, starts)
@@ -310,12 +321,12 @@ class _Skin:
 
 
 def _sections(rails: Floats64, normal: Floats64, thick: Floats64) -> Floats64:
-    """Return the elliptic sections of bands, (b, ROWS, AROUND, 3).
+    """Return the elliptic sections of bands, (b, ROW_COUNT, SECTION_POINTS, 3).
 
-    rails, normal: edges and middles with their outward directions, (3, b, ROWS, 3). thick: half the
-    thickness [mm], (b, ROWS).
+    rails, normal: edges and middles with their outward directions, (3, b, ROW_COUNT, 3).
+    thick: half the thickness [mm], (b, ROW_COUNT).
     """
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    angle = 2.0 * np.pi * np.arange(SECTION_POINTS) / SECTION_POINTS
     a = np.cos(angle)
     blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
     middle = np.tensordot(rails, blend, (0, 0))
@@ -325,7 +336,7 @@ def _sections(rails: Floats64, normal: Floats64, thick: Floats64) -> Floats64:
 
 
 def _widened(depths: Floats64) -> Floats64:
-    """Return depths along bands (b, ROWS) without steps, and nowhere smaller."""
+    """Return depths along bands (b, ROW_COUNT) without steps, and nowhere smaller."""
     padded = np.pad(depths, ((0, 0), (2, 2)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 3, axis=1).max(axis=-1)
     smooth: Floats64 = 0.25 * (windows[:, :-2] + 2.0 * windows[:, 1:-1] + windows[:, 2:])
@@ -333,36 +344,36 @@ def _widened(depths: Floats64) -> Floats64:
 
 
 def _lip_height(marks: Floats64) -> Floats64:
-    """Return the height of a lip's red along the mouth [mm], (ROWS,); 0 at the corners."""
-    upper, lower = _resampled(marks[np.array(LIPS)])
+    """Return the height of a lip's red along the mouth [mm], (ROW_COUNT,); 0 at the corners."""
+    upper, lower = _resampled(marks[np.array(LIP_LANDMARKS)])
     height: Floats64 = 0.5 * np.linalg.norm(upper - lower, axis=1)
     return height
 
 
 def _before_mouth(line: Floats64, marks: Floats64) -> Floats64 | None:
-    """Return the part of a line (ROWS, 3) that ends at the mouth; None if it is less than half.
+    """Return the part of a line (ROW_COUNT, 3) that ends at the mouth; None if it is short.
 
     Some of the rig's fibres were fitted to motion, and pull across the lips.
     """
     x, y = line[:, :2].T
-    upper, lower = (marks[list(row), :2].T for row in LIPS)
+    upper, lower = (marks[list(row), :2].T for row in LIP_LANDMARKS)
     is_inside = (y < np.interp(x, *upper)) & (y > np.interp(x, *lower))
     is_inside &= (x > upper[0, 0]) & (x < upper[0, -1])
-    rows = int(is_inside.argmax()) if is_inside.any() else ROWS
-    return None if 2 * rows < ROWS else _resampled(line[None, :rows])[0]
+    rows = int(is_inside.argmax()) if is_inside.any() else ROW_COUNT
+    return None if 2 * rows < ROW_COUNT else _resampled(line[None, :rows])[0]
 
 
 def _thickness(swollen: Floats64) -> Floats64:
-    """Return half the thickness of bands [mm], (b, ROWS), chosen by eye after anatomical plates."""
+    """Return half the thickness of bands [mm], (b, ROW_COUNT); chosen after anatomical plates."""
     most_thickness = 2.8
-    plump = 0.45 + 0.55 * ARCH**0.8
-    thick: Floats64 = 0.5 * most_thickness * plump * swollen**0.65 * END
+    plump = 0.45 + 0.55 * BELLY_PROFILE**0.8
+    thick: Floats64 = 0.5 * most_thickness * plump * swollen**0.65 * WIDTH_PROFILE
     return thick
 
 
 def _resampled(lines: Floats64) -> Floats64:
-    """Return ROWS points along each polyline (b, n, 3), smoothed where it bends."""
-    at = np.linspace(0.0, lines.shape[1] - 1.0, ROWS)
+    """Return ROW_COUNT points along each polyline (b, n, 3), smoothed where it bends."""
+    at = np.linspace(0.0, lines.shape[1] - 1.0, ROW_COUNT)
     low = np.minimum(at.astype(int), lines.shape[1] - 2)
     fraction = (at - low)[:, None]
     points: Floats64 = lines[:, low] * (1.0 - fraction) + lines[:, low + 1] * fraction

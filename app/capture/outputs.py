@@ -34,7 +34,7 @@ from ..files import (
     folder_atomically,
     written_atomically,
 )
-from ..passes.labels import ENDS, Labelled
+from ..passes.labels import FILE_ENDS, Labelled
 from ..pictures import QUICK_LEVEL, Image
 from ..sound.decoding import ffmpeg, sound_form, sound_input
 from ..stopping import cleaned_up_if_stopped
@@ -236,7 +236,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
             if beside is not None:
                 beside.save(picture)
 
-    frame_name = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
+    frame_name = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, FILE_ENDS))})")
     with (
         folder_atomically(target, frame_name, overwrite=overwrite) as temporary,
         ThreadPoolExecutor(workers) as threads,

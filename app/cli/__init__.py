@@ -55,5 +55,5 @@ def main() -> None:
     announce_compiling()
 
 
-for command in commands.ALL:
+for command in commands.ALL_COMMANDS:
     main.add_command(command)

@@ -17,11 +17,11 @@ from ..errors import UserError
 from ..files import cannot_be_written, check_apart, check_folder
 from ..stopping import cleaned_up_if_stopped
 from ..text import counted, in_one_line
-from .options import SILENT
+from .options import SILENT_OPTION
 from .value_types import PATH
 
-LISTED = ("capture", "export", "convert")  # commands that a line may hold
-OUTPUTS = ("output", "sheet")  # names of their parameters for output files
+LISTED_COMMANDS = ("capture", "export", "convert")  # commands that a line may hold
+OUTPUT_PARAMETERS = ("output", "sheet")  # names of their parameters for output files
 
 
 @click.command()
@@ -44,7 +44,7 @@ OUTPUTS = ("output", "sheet")  # names of their parameters for output files
 @click.option(
     "--logs", type=PATH, help="Folder for the logs of the lines; by default LIST_logs beside LIST."
 )
-@SILENT
+@SILENT_OPTION
 def batch(
     listing: Path,
     jobs: int | None,
@@ -123,9 +123,11 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
     name, *arguments = words_of(text)
     command = _listed(name)
     given = _parsed(command, arguments)
-    outputs = [given[key] for key in OUTPUTS if given.get(key) is not None]
+    outputs = [given[key] for key in OUTPUT_PARAMETERS if given.get(key) is not None]
     inputs = [
-        value for key, value in given.items() if isinstance(value, Path) and key not in OUTPUTS
+        value
+        for key, value in given.items()
+        if isinstance(value, Path) and key not in OUTPUT_PARAMETERS
     ]
     _check_files(name, given, inputs, outputs)
     if given.get("overwrite") is False and (resume or not outputs[0].suffix):
@@ -147,8 +149,10 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
 
 def _listed(name: str) -> click.Command:
     """Return the command of this name; raise UserError if a list may not hold it."""
-    if name not in LISTED:
-        raise UserError(f"'{name}' is not a command of a list; allowed are {', '.join(LISTED)}")
+    if name not in LISTED_COMMANDS:
+        raise UserError(
+            f"'{name}' is not a command of a list; allowed are {', '.join(LISTED_COMMANDS)}"
+        )
     parent = click.get_current_context().parent
     assert parent is not None and isinstance(parent.command, click.Group)
     return parent.command.commands[name]

@@ -12,7 +12,16 @@ from ..errors import UserError
 from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
-from .options import SCENE, SCRIPT, SETTINGS, SOUND, Drawing, option, packed, played
+from .options import (
+    SCENE_OPTION,
+    SCRIPT_ARGUMENT,
+    SETTINGS_OPTION,
+    SOUND_OPTION,
+    Drawing,
+    option,
+    packed,
+    played,
+)
 from .value_types import MAP_BACKGROUND, PATH, BackgroundName, FiniteRange, Size, Times
 
 if TYPE_CHECKING:
@@ -149,8 +158,8 @@ class Filming:
 
 
 @click.command(cls=GroupedCommand)
-@SCRIPT
-@SETTINGS
+@SCRIPT_ARGUMENT
+@SETTINGS_OPTION
 @click.option(
     "-o",
     "--output",
@@ -158,8 +167,8 @@ class Filming:
     help="The film: out.mp4, .webm, .gif or .webp; a .png; or a folder of frames.",
 )
 @click.option("--sheet", type=PATH, help="A .png with the named poses side by side.")
-@SCENE
-@SOUND
+@SCENE_OPTION
+@SOUND_OPTION
 @packed(Filming)
 @packed(Drawing)
 def capture(

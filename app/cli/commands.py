@@ -24,11 +24,11 @@ from .dataset import dataset
 from .export import export
 from .help import GroupedCommand
 from .options import (
-    GAIN,
-    MIRROR,
-    QUIET,
+    GAIN_OPTION,
+    MIRROR_OPTION,
+    QUIET_OPTION,
     SCENE_NAMES,
-    SOUND,
+    SOUND_OPTION,
     Drawing,
     option,
     packed,
@@ -86,11 +86,11 @@ class Live:
 @click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--scene", type=SCENE_NAMES, help="The scene to animate; by default the face.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
-@SOUND
-@QUIET
+@SOUND_OPTION
+@QUIET_OPTION
 @packed(Live)
-@GAIN
-@MIRROR
+@GAIN_OPTION
+@MIRROR_OPTION
 @packed(Drawing)
 def view(
     size: tuple[int, int] | None,
@@ -150,8 +150,8 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 @click.argument("script", type=PATH)
 @click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
-@SOUND
-@QUIET
+@SOUND_OPTION
+@QUIET_OPTION
 @packed(Drawing)
 def replay(
     script: Path,
@@ -170,7 +170,7 @@ def replay(
 @click.argument("recording", type=PATH)
 @click.option("-o", "--output", type=PATH, required=True, help="The script: script.toml.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing script.")
-@QUIET
+@QUIET_OPTION
 @with_playback
 def convert(
     recording: Path, output: Path, overwrite: bool, quiet: bool, playback: Playback
@@ -317,4 +317,17 @@ def doctor(offscreen: bool, quiet: bool) -> None:
     sys.exit(int(health))
 
 
-ALL = (capture, export, rig, batch, dataset, view, replay, convert, send, demo, controls, doctor)
+ALL_COMMANDS = (
+    capture,
+    export,
+    rig,
+    batch,
+    dataset,
+    view,
+    replay,
+    convert,
+    send,
+    demo,
+    controls,
+    doctor,
+)

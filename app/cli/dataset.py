@@ -9,7 +9,7 @@ import click
 
 from ..errors import UserError
 from ..text import counted, in_one_line
-from .options import SILENT, printing
+from .options import SILENT_OPTION, printing
 from .value_types import PATH, Size
 
 
@@ -81,7 +81,7 @@ from .value_types import PATH, Size
     help="Address of a Dask cluster that makes the samples: tcp://host:8786.",
 )
 @click.option("--resume", is_flag=True, help="Continue a set, or make it larger.")
-@SILENT
+@SILENT_OPTION
 @printing(
     "--sample-table",
     "risorius.app.dataset",

@@ -17,7 +17,7 @@ from ..errors import UserError
 from ..sound.decoding import ffmpeg
 from ..text import in_one_line
 
-PATIENCE = 20.0  # [s] for ffmpeg to report its version
+FFMPEG_TIMEOUT = 20.0  # [s] for ffmpeg to report its version
 EXTRAS = {
     "window": ("imgui_bundle", "glfw", "miniaudio"),
     "films": ("imageio_ffmpeg",),
@@ -142,7 +142,7 @@ def _films() -> tuple[bool, str]:
             capture_output=True,
             text=True,
             errors="replace",
-            timeout=PATIENCE,
+            timeout=FFMPEG_TIMEOUT,
             check=True,
         )
     except (UserError, OSError, subprocess.SubprocessError) as error:

@@ -13,7 +13,7 @@ from ..export.formats import FORMATS, ExportRequest, check_request, format_for
 from ..export.formats import export as write
 from ..text import in_one_line
 from .help import GroupedCommand
-from .options import SCENE, SCRIPT, SETTINGS, Subject, option, packed, played
+from .options import SCENE_OPTION, SCRIPT_ARGUMENT, SETTINGS_OPTION, Subject, option, packed, played
 from .value_types import PATH, FiniteRange
 
 if TYPE_CHECKING:
@@ -63,10 +63,10 @@ class Exporting:
 
 
 @click.command(cls=GroupedCommand)
-@SCRIPT
-@SETTINGS
+@SCRIPT_ARGUMENT
+@SETTINGS_OPTION
 @click.option("-o", "--output", type=PATH, required=True, help="The file; with --as also a folder.")
-@SCENE
+@SCENE_OPTION
 @packed(Exporting)
 @packed(Subject)
 def export(

@@ -18,20 +18,22 @@ HEADINGS: Mapping[str, tuple[str, ...]] = {  # names of parameters, in the order
     "Picture": ("camera", "background", "light", "style_settings", "anatomy"),
 }
 
-_CONVERT = "convert the recording first: risorius convert RECORDING {option} ... -o script.toml"
-_STYLE = "write --style {name}=VALUE"
-_WORD = "write --style {name}"
-MOVED: Mapping[str, str] = {
-    "--neutral": _CONVERT,
-    "--gain": _CONVERT,
-    "--mirror": _CONVERT,
-    "--lead": _CONVERT,
-    "--face": _CONVERT,
-    "--rate": _CONVERT,
-    "--skin": _STYLE,
-    "--wrinkles": _STYLE,
-    "--wireframe": _WORD,
-    "--splits": _WORD,
+_CONVERT_HINT = (
+    "convert the recording first: risorius convert RECORDING {option} ... -o script.toml"
+)
+_STYLE_HINT = "write --style {name}=VALUE"
+_STYLE_WORD_HINT = "write --style {name}"
+MOVED_OPTIONS: Mapping[str, str] = {
+    "--neutral": _CONVERT_HINT,
+    "--gain": _CONVERT_HINT,
+    "--mirror": _CONVERT_HINT,
+    "--lead": _CONVERT_HINT,
+    "--face": _CONVERT_HINT,
+    "--rate": _CONVERT_HINT,
+    "--skin": _STYLE_HINT,
+    "--wrinkles": _STYLE_HINT,
+    "--wireframe": _STYLE_WORD_HINT,
+    "--splits": _STYLE_WORD_HINT,
     "--skin-opacity": "write --anatomy muscles,skull,opacity=VALUE",
     "--dissect": "write --anatomy muscles,skull,dissect=VALUE",
     "--person": "write --head NUMBER, or the person's name; `risorius rig` takes it as HEAD",
@@ -55,7 +57,7 @@ class RenewedCommand(click.Command):
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
-            instead = MOVED.get(error.option_name)
+            instead = MOVED_OPTIONS.get(error.option_name)
             if instead is None:
                 raise
             name = error.option_name.removeprefix("--")

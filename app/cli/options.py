@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..playback import LEAD, Playback
+from ..playback import LEAD_TIME, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
 from .styles import LIGHT_NAMES, STRUCTURES, STYLE_WORDS, anatomy_in, style_in
 from .value_types import PATH, FiniteRange, HeadName
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
 
 Command = Callable[..., Any]
 SCENE_NAMES = click.Choice(["face", "plane"])
-SOUND = click.option(
+SOUND_OPTION = click.option(
     "--sound", type=PATH, help="The sound: a WAV, an MP3, another sound file, or a film with sound."
 )
-QUIET = click.option("--quiet", is_flag=True, help="Print no report of a recording.")
-SILENT = click.option("--quiet", is_flag=True, help="No progress bar.")
-SCRIPT = click.argument("script", type=PATH, required=False)
-SETTINGS = click.option(
+QUIET_OPTION = click.option("--quiet", is_flag=True, help="Print no report of a recording.")
+SILENT_OPTION = click.option("--quiet", is_flag=True, help="No progress bar.")
+SCRIPT_ARGUMENT = click.argument("script", type=PATH, required=False)
+SETTINGS_OPTION = click.option(
     "--set",
     "settings",
     multiple=True,
     metavar="NAME=VALUE",
     help="Hold a control at this value, in place of a SCRIPT.",
 )
-SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
+SCENE_OPTION = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 
 
 def option(*names: str, **about: Any) -> Any:
@@ -235,7 +235,7 @@ class Drawing(Subject):
         return AnatomyView(structures, OPACITY if opacity is None else opacity, side)
 
 
-GAIN = click.option(
+GAIN_OPTION = click.option(
     "--gain",
     "gains",
     multiple=True,
@@ -243,20 +243,20 @@ GAIN = click.option(
     help="Multiply the values of a channel by x. NAME is a channel, a pattern (mouth*, *Left), or "
     "all.",
 )
-MIRROR = click.option("--mirror", is_flag=True, help="Swap left and right.")
-PLAYBACK = (
+MIRROR_OPTION = click.option("--mirror", is_flag=True, help="Swap left and right.")
+PLAYBACK_OPTIONS = (
     click.option(
         "--neutral",
         metavar="HOW",
         help="The face at rest, which is subtracted: first:1 (median of the first second), "
         "percentile (the 5th of each channel) or none. The default depends on the kind of file.",
     ),
-    GAIN,
-    MIRROR,
+    GAIN_OPTION,
+    MIRROR_OPTION,
     click.option(
         "--lead",
         type=FiniteRange(0, 0.5),
-        default=LEAD,
+        default=LEAD_TIME,
         show_default=True,
         help="Time by which muscles move before the recording [s], because skin follows them late.",
     ),
@@ -265,7 +265,7 @@ PLAYBACK = (
         "--rate", type=FiniteRange(1, 1000), help="Frames per second, in place of the file's times."
     ),
 )
-with_playback = packed(Playback, PLAYBACK)
+with_playback = packed(Playback, PLAYBACK_OPTIONS)
 
 
 def _print_report(report: Report) -> None:

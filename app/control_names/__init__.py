@@ -13,7 +13,7 @@ from typing import Any
 
 from risorius.assets.loading import read_words
 
-SIDES = (("_left", "_right"), ("Left", "Right"))  # ends of names: ours, ARKit's
+SIDE_ENDINGS = (("_left", "_right"), ("Left", "Right"))  # ends of names: ours, ARKit's
 SIGNED_CONTROLS = (  # positive values turn to one side, negative values to the other
     "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
     "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
@@ -31,7 +31,7 @@ _TWINS = {  # mirrored controls whose names show no side: eyes turn left, right 
 @functools.lru_cache(maxsize=CACHE_SIZE)
 def split_side(name: str) -> tuple[str, str]:
     """Split a name into its base and its side as spelled; the side is "" for the middle."""
-    for side in (side for pair in SIDES for side in pair):
+    for side in (side for pair in SIDE_ENDINGS for side in pair):
         if name.endswith(side):
             return name.removesuffix(side), side
     return name, ""
@@ -43,7 +43,7 @@ def twin_of(name: str) -> str:
     if name in _TWINS:
         return _TWINS[name]
     base, side = split_side(name)
-    for left, right in SIDES:
+    for left, right in SIDE_ENDINGS:
         if side in (left, right):
             return base + (right if side == left else left)
     return name

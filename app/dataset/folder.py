@@ -21,11 +21,11 @@ from typing import Any
 from ..errors import UserError
 from ..files import cannot_be_written, check_links, save_text
 from ..staging import is_staging_folder, locked
-from .shards import PATTERN, read_shard
+from .shards import SHARD_PATTERN, read_shard
 
 UNFINISHED = ".unfinished"
 TOKEN_PREFIX = "seen-"  # prefix of files by which workers recognise the set's folder
-LENGTHS = "files"  # label that holds the lengths of a sample's other files [bytes]
+LENGTHS_LABEL = "files"  # label that holds the lengths of a sample's other files [bytes]
 
 
 def name_of(index: int) -> str:
@@ -115,7 +115,7 @@ class SetFolder:
 
     def numbers(self) -> set[int]:
         """Return the numbers of all samples with a .json, in the folder or in a shard."""
-        shards = map(read_shard, self.path.glob(PATTERN))
+        shards = map(read_shard, self.path.glob(SHARD_PATTERN))
         packed = {number for shard in shards if shard for number in shard.places}
         with os.scandir(self.path) as items:
             sample_name = re.compile(r"(\d{6})\.json")
@@ -124,7 +124,7 @@ class SetFolder:
 
     def _has_samples(self) -> bool:
         """Whether the folder has a sample or a shard."""
-        return bool(self.numbers()) or any(self.path.glob(PATTERN))
+        return bool(self.numbers()) or any(self.path.glob(SHARD_PATTERN))
 
     def has(self, index: int) -> bool:
         """Whether all files of a sample exist and are complete, by the lengths in its .json."""
@@ -134,7 +134,7 @@ class SetFolder:
             return False
         if not isinstance(labels, dict) or labels.get("index") != index:
             return False
-        lengths = labels.get(LENGTHS)
+        lengths = labels.get(LENGTHS_LABEL)
         if not isinstance(lengths, dict) or f"{name_of(index)}.png" not in lengths:
             return False
         return all(_length(self.path / name) == length for name, length in lengths.items())
@@ -169,7 +169,7 @@ class SetFolder:
 
     def files_of(self, index: int) -> list[Path]:
         """Return the files of a sample, its .json first."""
-        names = [f"{name_of(index)}.json", *sorted(self.sample(index)[LENGTHS])]
+        names = [f"{name_of(index)}.json", *sorted(self.sample(index)[LENGTHS_LABEL])]
         return [self.path / name for name in names]
 
     def sample(self, index: int) -> dict[str, Any]:
@@ -183,7 +183,7 @@ def _add_lengths(file: Path) -> None:
     """Add the lengths of the files beside a sample's .json to its labels."""
     labels = json.loads(file.read_bytes())
     beside = sorted(path for path in file.parent.iterdir() if path != file)
-    labels[LENGTHS] = {path.name: path.stat().st_size for path in beside}
+    labels[LENGTHS_LABEL] = {path.name: path.stat().st_size for path in beside}
     file.write_text(json.dumps(labels, separators=(",", ":")) + "\n", encoding="utf-8")
 
 

@@ -17,7 +17,7 @@ from ..passes.labels import labels_of
 from ..scenes import FaceScene
 from .openings import apertures
 
-DIGITS = 5  # decimal places of labels
+DECIMAL_PLACES = 5  # decimal places of labels
 
 
 def labels_of_face(
@@ -40,7 +40,7 @@ def labels_of_face(
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": action_units(scene),
-        "arkit": {name: round(float(value[0]), DIGITS) for name, value in arkit.items()},
+        "arkit": {name: round(float(value[0]), DECIMAL_PLACES) for name, value in arkit.items()},
         "apertures": apertures(positions, scene.faces, positions[scene.landmarks]),
         "face_box": np.concatenate([low, high - low]).round(3).tolist(),
         **labels,
@@ -59,7 +59,8 @@ def action_units(scene: FaceScene) -> dict[str, float]:
     units = {}
     for name in sorted(scene.simulation.controls.layers[ACTION_UNITS], key=by_number):
         names = (name, f"{name}_left", f"{name}_right")
-        units[name] = round(max(float(found[each][0]) for each in names if each in found), DIGITS)
+        largest = max(float(found[each][0]) for each in names if each in found)
+        units[name] = round(largest, DECIMAL_PLACES)
     return units
 
 

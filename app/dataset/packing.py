@@ -10,7 +10,7 @@ from typing import Any
 
 from ..files import cannot_be_written
 from .folder import SetFolder
-from .shards import PATTERN, Shard, files_in, read_shard, remove_shard, write_shard
+from .shards import SHARD_PATTERN, Shard, files_in, read_shard, remove_shard, write_shard
 
 
 class Packing:
@@ -33,7 +33,7 @@ class Packing:
         If a set is to become longer, its last shard is also unpacked.
         """
         with cannot_be_written(self._folder.path):
-            for path in sorted(self._folder.path.glob(PATTERN)):
+            for path in sorted(self._folder.path.glob(SHARD_PATTERN)):
                 place = int(path.stem.removeprefix("shard-"))
                 shard = read_shard(path)
                 if shard is not None and sorted(shard.places) == self._wanted(place):

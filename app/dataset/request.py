@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..passes.labels import check_wanted
-from ..passes.passes import IMAGES
+from ..passes.passes import IMAGE_PASSES
 from ..refining.refiners import parse_options
 from ..text import as_text
 from .surroundings import Backgrounds, LightFiles, backgrounds_of, light_files_of
@@ -79,7 +79,7 @@ def request_of(
     """Make a request from command-line options; if these do not fit together, raise UserError."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
-    passes = tuple(name for name in IMAGES if name in passes)
+    passes = tuple(name for name in IMAGE_PASSES if name in passes)
     settings = {
         "sample": sample,
         "seed": seed,

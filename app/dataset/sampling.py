@@ -18,7 +18,7 @@ import numpy as np
 
 from ..control_names.angles import DEGREES
 from .degrading import Degradation
-from .table import BLINK, LETTERS, PERSONS, SampleTable, Weights, paired_units
+from .table import BLINK, LETTERS, PERSON_COUNT, SampleTable, Weights, paired_units
 
 MOST_UNITS = 7  # greatest number of units in a mixture
 
@@ -97,7 +97,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
         SampleCamera(yaw, pitch, zoom, field_of_view, (across, along)),
-        seed * PERSONS + int(looks.integers(table.persons.count)),
+        seed * PERSON_COUNT + int(looks.integers(table.persons.count)),
         chosen(looks, table.lights),
         int(looks.integers(2**63)),
         _degradation(table, faults),

@@ -24,7 +24,7 @@ from typing import IO, Any
 
 from ..files import written_atomically
 
-PATTERN = "shard-[0-9][0-9][0-9][0-9][0-9][0-9].tar"
+SHARD_PATTERN = "shard-[0-9][0-9][0-9][0-9][0-9][0-9].tar"
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from risorius.assets.identities import (
     wearing,
 )
 
-from ..control_names.angles import GAZE
+from ..control_names.angles import GAZE_ANGLE
 from ..motion.life import looking_at
 from ..passes.camera import CameraLabels
 from ..passes.labels import Labelled
@@ -187,7 +187,7 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     if sample.gaze is None:
         eyes = looking_at(scene.face, camera.eye)["eyes"]
     else:
-        aside, up = (round(degrees / GAZE, 4) for degrees in sample.gaze)
+        aside, up = (round(degrees / GAZE_ANGLE, 4) for degrees in sample.gaze)
         eyes = {"gaze_horizontal": aside, "gaze_vertical": up}
     scene.pose({**sample.controls, **eyes})
     scene.step(SHOT_SETTLING)

@@ -33,7 +33,7 @@ from ..files import NoSuchFileError, read_text
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 NOTHING_WORN = "none"  # in the table: no glasses, or no mask
-PERSONS = 1_000_000  # number of persons of a seed; other seeds have other persons
+PERSON_COUNT = 1_000_000  # number of persons of a seed; other seeds have other persons
 Weights = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -158,7 +158,7 @@ class Camera(Record):
 class Persons(Record):
     """Number of persons, fraction of women, ages [years], and skin tones, ITA [degrees]."""
 
-    count: Annotated[int, Within(1, PERSONS)]
+    count: Annotated[int, Within(1, PERSON_COUNT)]
     women: Fraction
     age: Annotated[Range, _between(18.0, 90.0)]
     tone: Annotated[Range, _between(DARKEST_TONE, LIGHTEST_TONE)]

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-FRAME = "frame_{:05d}"  # names of the files of a sequence, without suffix
+FRAME_NAME = "frame_{:05d}"  # names of the files of a sequence, without suffix
 SEQUENCE_FILES = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files of a sequence
 
 
@@ -95,11 +95,11 @@ class Format:
         return writer
 
 
-MESH = (".obj", ".mtl", "_skin.png")  # mesh, materials and the skin's picture
+MESH_FILES = (".obj", ".mtl", "_skin.png")  # mesh, materials and the skin's picture
 FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
     Format("usd", "USD", (".usdz",), "usd:write_usd", changes=True),
-    Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH),
+    Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH_FILES),
     Format("obj", "OBJ sequence", (), "obj:write_obj", changes=True),
     Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", changes=True),
     Format("npz", "numpy arrays", (".npz",), "tables:write_npz"),

@@ -19,7 +19,7 @@ from risorius.geometry.arrays import Integers32
 
 from ..rig.surface import METRES
 from .clip import Clip, FrameSurface, frame_surfaces
-from .formats import FRAME, ExportRequest
+from .formats import FRAME_NAME, ExportRequest
 
 
 def write_obj(clip: Clip, folder: Path, request: ExportRequest) -> None:
@@ -30,7 +30,7 @@ def write_obj(clip: Clip, folder: Path, request: ExportRequest) -> None:
     material = _write_material(clip, folder / "frame.mtl")
     frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
-        path = folder / f"{FRAME.format(number)}.obj"
+        path = folder / f"{FRAME_NAME.format(number)}.obj"
         _write(path, _obj_text(clip, frame, material))
 
 

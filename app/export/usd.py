@@ -29,8 +29,8 @@ Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
     for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
-PICTURE = "skin.png"
-ALWAYS = Usd.TimeCode.Default()
+PICTURE_NAME = "skin.png"
+ALL_TIMES = Usd.TimeCode.Default()
 
 
 def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
@@ -38,7 +38,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
     is_text = as_text(part) == str(part)  # USD only accepts names in UTF-8
     with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
         layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")
-        picture = Path(folder) / PICTURE
+        picture = Path(folder) / PICTURE_NAME
         package = Path(folder) / "package.usdz"
         if clip.scene.skin.albedo is not None:
             PIL.Image.fromarray(clip.scene.skin.albedo).save(picture)
@@ -79,9 +79,9 @@ def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
 
 def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> None:
     """Add a mesh with constant triangles; its points move, or the mesh moves as a whole."""
-    _set_faces(mesh, surface.faces, ALWAYS)
+    _set_faces(mesh, surface.faces, ALL_TIMES)
     if surface.shapes is None:
-        _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALWAYS)
+        _set_points(mesh, surface.rest, surface.normals_of(surface.rest, None), ALL_TIMES)
     else:
         frames = request.counted(surface.shapes.astype(np.float64), len(surface.shapes))
         for frame, points in enumerate(frames):
@@ -91,7 +91,7 @@ def _add_surface(mesh: Any, surface: MovingSurface, request: ExportRequest) -> N
         operation = mesh.AddTransformOp()
         matrices = [Gf.Matrix4d(matrix.T) for matrix in surface.matrices]  # USD uses row vectors
         if not moves:
-            operation.Set(matrices[0], ALWAYS)
+            operation.Set(matrices[0], ALL_TIMES)
         else:
             for frame, matrix in enumerate(matrices):
                 operation.Set(matrix, frame)
@@ -165,7 +165,7 @@ def _add_material(stage: Any, mesh: Any, surface: MovingSurface, *, has_picture:
         name.Set("st")
         texture = UsdShade.Shader.Define(stage, path.AppendChild("texture"))
         texture.CreateIdAttr("UsdUVTexture")
-        texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"./{PICTURE}")
+        texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"./{PICTURE_NAME}")
         texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
         st = reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
         texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(st)

@@ -23,10 +23,10 @@ from ..recordings.names import ARKIT
 from .frame import LiveFrame, readable_subject, set_angle, set_shape
 
 VERSION = 6
-COUNT = 61
+VALUE_COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name
 # Channels after the shapes; None for the roll of eyes.
-ANGLES = (
+ANGLE_CHANNELS = (
     "head_yaw", "head_pitch", "head_roll",
     "eye_yaw_left", "eye_pitch_left", None, "eye_yaw_right", "eye_pitch_right", None,
 )  # fmt: skip
@@ -43,17 +43,17 @@ def parse(packet: bytes) -> LiveFrame | None:
         if len(packet) < at:
             return None
         name = readable_subject(subject)
-        if len(packet) == at or packet[at:] in (b"\0", bytes([COUNT])):
+        if len(packet) == at or packet[at:] in (b"\0", bytes([VALUE_COUNT])):
             return LiveFrame(subject=name, has_face=False)
-        if packet[at] != COUNT or len(packet) != at + 1 + 4 * COUNT:
+        if packet[at] != VALUE_COUNT or len(packet) != at + 1 + 4 * VALUE_COUNT:
             return None
-        values = struct.unpack_from(f">{COUNT}f", packet, at + 1)
+        values = struct.unpack_from(f">{VALUE_COUNT}f", packet, at + 1)
     except (struct.error, ValueError):
         return None
     channels: dict[str, float] = {}
     for shape, value in zip(ARKIT, values, strict=False):
         set_shape(channels, shape, value)
-    for angle, value in zip(ANGLES, values[len(ARKIT) :], strict=True):
+    for angle, value in zip(ANGLE_CHANNELS, values[len(ARKIT) :], strict=True):
         if angle is not None:
             set_angle(channels, angle, -math.degrees(value) - OUTWARD_ANGLES.get(angle, 0.0))
     return LiveFrame(channels, name)
@@ -71,7 +71,7 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
     """Return Live Link Face's packet for these channels; missing channels are 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
-    for angle in ANGLES:
+    for angle in ANGLE_CHANNELS:
         degrees = channels.get(angle or "", 0.0) + OUTWARD_ANGLES.get(angle or "", 0.0)
         values.append(-math.radians(degrees))
     head = struct.pack(">B", VERSION)
@@ -80,4 +80,4 @@ def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> byt
         head += struct.pack(">i", len(text)) + text
     frame_rate = 60
     time = struct.pack(">ifii", frame, 0.0, frame_rate, 1)
-    return head + time + struct.pack(f">B{COUNT}f", COUNT, *values)
+    return head + time + struct.pack(f">B{VALUE_COUNT}f", VALUE_COUNT, *values)

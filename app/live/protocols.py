@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Parser = Callable[[bytes], LiveFrame | None]  # see frame.py
 
 LOOPBACK = "127.0.0.1"
-ANYWHERE = "0.0.0.0"
+ANY_ADDRESS = "0.0.0.0"
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 from ..errors import UserError
 from .frame import MOST_BYTES, LiveFrame
-from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
+from .protocols import ANY_ADDRESS, LOOPBACK, Listening, resolved
 
 
 class Receiver:
@@ -108,6 +108,6 @@ def _bound_socket(listening: Listening) -> socket.socket:
         raise UserError(
             f"cannot listen on {address}, port {port}: {error.strerror}; close the program that "
             f"listens there, choose another --port, or another --address ({LOOPBACK} for this "
-            f"computer only, {ANYWHERE} for its whole network)"
+            f"computer only, {ANY_ADDRESS} for its whole network)"
         ) from None
     return opened

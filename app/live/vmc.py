@@ -35,7 +35,7 @@ from risorius.geometry.transforms import angles_of
 from .frame import LiveFrame, set_angle, set_shape, shape_named
 
 _BUNDLE = b"#bundle\0"
-_HEAD = len(_BUNDLE) + 8  # the mark and a time, which is ignored
+_HEADER_LENGTH = len(_BUNDLE) + 8  # the mark and a time, which is ignored
 # First bytes of the messages that are read; the library might log errors for other messages.
 _KNOWN_BEGINNING = re.compile(
     rb"/VMC/Ext/(Blend/Val\0\0,s[fdi]\0|Blend/Apply\0{4}(,\0{3})?\Z|Bone/Pos\0{3},sf{7}\0{3})"
@@ -80,7 +80,7 @@ def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
     if not packet.startswith(_BUNDLE):
         yield packet
         return
-    at = _HEAD
+    at = _HEADER_LENGTH
     while at < len(packet):
         (size,) = struct.unpack_from(">i", packet, at)
         at += 4

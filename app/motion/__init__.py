@@ -25,7 +25,7 @@ class Tally:
 
 
 tally = Tally()
-SETTLING = 1.0  # [s] after which the face rests in a pose
+SETTLING_TIME = 1.0  # [s] after which the face rests in a pose
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
@@ -69,7 +69,7 @@ def play(
     scene.reset()
     pose(0.0)
     if any(scene.values.values()):
-        step(SETTLING)
+        step(SETTLING_TIME)
     until = script.duration if until is None else until
     for index in counted_frames(until, frames_per_second, progress=progress):
         pose(index / frames_per_second)

@@ -30,7 +30,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from ..control_names.angles import DEGREES, GAZE
+from ..control_names.angles import DEGREES, GAZE_ANGLE
 from ..scenes import Face, Scene
 
 Values = dict[str, float]
@@ -39,10 +39,10 @@ Place = tuple[float, float]  # to the left and up [degrees]
 
 # Greatest idle motion of the head [degrees].
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
-NOD = 4.0  # [degrees] that the head turns down for a fully open jaw
+NOD_ANGLE = 4.0  # [degrees] that the head turns down for a fully open jaw
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, without a common period
 
-LID = "orbicularis_oculi_palpebral_upper"
+LID_CONTROL = "orbicularis_oculi_palpebral_upper"
 BLINKS, GLANCES, PLACES, STRAYS = range(4)  # separate streams of random numbers
 
 
@@ -62,10 +62,10 @@ class Life:
         strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)
         blink_span = 3.5  # [s] for each blink
         return {
-            "lids": _both_sides(LID, lid(time - self._latest(BLINKS, blink_span, time)[1])),
+            "lids": _both_sides(LID_CONTROL, lid(time - self._latest(BLINKS, blink_span, time)[1])),
             "eyes": {
-                **_both_sides("gaze_horizontal", across / GAZE),
-                **_both_sides("gaze_vertical", along / GAZE),
+                **_both_sides("gaze_horizontal", across / GAZE_ANGLE),
+                **_both_sides("gaze_vertical", along / GAZE_ANGLE),
             },
             "head": {name: most * share / DEGREES[name] for (name, most), share in strays},
         }
@@ -174,7 +174,7 @@ class Idle:
             sums = {name: own.get(name, 0.0) + value for name, value in values.items()}
             parts[part] = {**own, **sums}
         if "head" in parts:
-            nod = NOD * min(opening, 0.5)  # no syllable opens the mouth farther
+            nod = NOD_ANGLE * min(opening, 0.5)  # no syllable opens the mouth farther
             parts["head"]["head_pitch"] -= nod / DEGREES["head_pitch"]
         return {
             name: value
@@ -207,7 +207,7 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     for side, centre in centres.items():
         for way, angle in zip(("horizontal", "vertical"), _angles(seen - centre), strict=True):
             angle = min(max(share * angle, -EYES_MOST), EYES_MOST)
-            eyes[f"gaze_{way}_{side}"] = angle / GAZE
+            eyes[f"gaze_{way}_{side}"] = angle / GAZE_ANGLE
     head = {
         "head_yaw": turn / DEGREES["head_yaw"],
         "head_pitch": rise / DEGREES["head_pitch"],

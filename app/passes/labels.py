@@ -33,9 +33,9 @@ from ..pictures import Image
 from ..scenes import Face, Scene
 from .camera import CameraLabels
 from .landmarks import SIDES, Landmarks, jaw_on_bone, landmarks_in
-from .passes import NAMES, OF_FACES, Passes
+from .passes import OF_FACES, PASS_NAMES, Passes
 
-DIGITS = 8  # decimals, with which projected points are exact to 1e-4 pixels
+DECIMAL_PLACES = 8  # decimals, with which projected points are exact to 1e-4 pixels
 
 
 def labels_of(
@@ -73,11 +73,13 @@ def labels_of(
     angles = zip(("yaw", "pitch", "roll"), angles_of(turned), strict=True)
     directions = {side: gaze(face, side) for side in SIDES}
     sums = face.simulation.controls.sums
-    labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
+    labels["activations"] = {
+        name: round(value, DECIMAL_PLACES) for name, value in sums.items() if value
+    }
     labels["head"] = {
         "R": _as_lists(rotation),
         "t": _as_lists(placed.to_camera(cranium[None, :3, 3])[0]),
-        **{name: round(angle, DIGITS) for name, angle in angles},
+        **{name: round(angle, DECIMAL_PLACES) for name, angle in angles},
     }
     labels["gaze"] = {
         side: {
@@ -105,7 +107,7 @@ def _plain_landmarks(found: Landmarks) -> dict[str, Any]:
 
 def _as_lists(numbers: Floats64) -> Any:
     """Convert an array to lists of rounded numbers without negative zeros."""
-    return (np.round(numbers, DIGITS) + 0.0).tolist()
+    return (np.round(numbers, DECIMAL_PLACES) + 0.0).tolist()
 
 
 def gaze(face: Face, side: str) -> Floats64:
@@ -122,12 +124,12 @@ CHANNELS = {
     "splits": ("splits",),
 }
 NO_TRIANGLE = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is read as signed
-ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
+FILE_ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 
 def beside(picture: Path) -> list[Path]:
-    """Return the paths of files that may be written beside a picture, in the order of ENDS."""
-    return [picture.with_name(picture.stem + end) for end in ENDS]
+    """Return the paths of files that may be written beside a picture, in the order of FILE_ENDS."""
+    return [picture.with_name(picture.stem + end) for end in FILE_ENDS]
 
 
 @dataclass(frozen=True)
@@ -166,12 +168,14 @@ def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
 def check_wanted(wanted: Sequence[str], scene: str) -> None:
     """Raise UserError for unknown passes, and for passes that the scene or a library lacks."""
     for name in wanted:
-        if name not in NAMES:
-            raise UserError(f"--passes: '{name}' is not a pass; allowed are {', '.join(NAMES)}")
+        if name not in PASS_NAMES:
+            raise UserError(
+                f"--passes: '{name}' is not a pass; allowed are {', '.join(PASS_NAMES)}"
+            )
         if name in OF_FACES and scene != "face":
             raise UserError(
                 f"--passes {name}: the scene {scene} has no face; allowed are "
-                f"{', '.join(each for each in NAMES if each not in OF_FACES)}"
+                f"{', '.join(each for each in PASS_NAMES if each not in OF_FACES)}"
             )
     if any(name in CHANNELS for name in wanted):
         openexr()

@@ -25,9 +25,9 @@ from risorius.assets.identities import GLASSES, HAIR, MASK
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
 
-IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
+IMAGE_PASSES = ("depth", "normal", "triangle", "splits", "segmentation")
 OF_FACES = ("segmentation", "landmarks")  # other scenes lack these
-NAMES = (*IMAGES, "landmarks")
+PASS_NAMES = (*IMAGE_PASSES, "landmarks")
 Bytes = npt.NDArray[np.uint8]
 
 
@@ -51,7 +51,7 @@ class Passes:
         self,
         camera: render.OrbitCamera,
         style: render.Style,
-        wanted: Collection[str] = IMAGES,
+        wanted: Collection[str] = IMAGE_PASSES,
     ) -> dict[str, npt.NDArray[Any]]:
         """Draw the passes of these names, for the last picture of `Pipeline.draw`.
 
@@ -77,7 +77,7 @@ class Passes:
             found["splits"] = np.append(splits, np.zeros(parts + 1, np.uint8))[geometry.triangle]
         if "segmentation" in wanted:
             found["segmentation"] = self._segmentation(geometry, drawn.triangle_count)
-        return {name: found[name] for name in IMAGES if name in wanted}
+        return {name: found[name] for name in IMAGE_PASSES if name in wanted}
 
     def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
         """Return the classes of pixels: parts by their triangles, skin by a map of its texture."""

@@ -15,7 +15,7 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 from ..control_names.limits import Limits
-from ..playback import LEAD, Playback
+from ..playback import LEAD_TIME, Playback
 from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
 from ..script.thinning import TOLERANCE, thinned
 from ..text import in_one_line
@@ -69,10 +69,10 @@ def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
 
 def lead_of(control: str, lead: float) -> float:
     """Return the lead of a control [s], in proportion to its lag; given the lead of muscles."""
-    # Lag of eyes and head [s]; the lag of muscles and skin is LEAD. All were measured at 60 Hz.
+    # Lag of eyes and head [s]; LEAD_TIME is the lag of muscles and skin. Measured at 60 Hz.
     lateness = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
-    late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD)
-    return lead * late / LEAD
+    late = next((each for start, each in lateness.items() if control.startswith(start)), LEAD_TIME)
+    return lead * late / LEAD_TIME
 
 
 def _track(times: Floats64, values: Floats64, lead: float) -> Channel:

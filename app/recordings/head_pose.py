@@ -20,17 +20,19 @@ from risorius.geometry.transforms import angles_of
 from .angles import in_degrees
 from .names import HEAD_ANGLES, angle_of, letters_of
 
-MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
-POSES = re.compile(
+MATRIX_KEYS = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
+POSE_KEY = re.compile(
     r"(head|face|facial)?(rotations?|pose|angles?|euler(angles?)?|orientation|quat(ernion)?"
     r"|transform(ation)?(matrix)?|matrix)$|head$"
 )
-ANGLE = re.compile(r"(?:head)?(yaw|pitch|roll)(?:angle)?(?:in)?(?:deg(?:rees)?|rad(?:ians)?)?$")
+ANGLE_NAME = re.compile(
+    r"(?:head)?(yaw|pitch|roll)(?:angle)?(?:in)?(?:deg(?:rees)?|rad(?:ians)?)?$"
+)
 
 
 def is_pose(key: str) -> bool:
     """Whether a key, without capitals and underscores, may hold the turn of the head."""
-    return key in MATRICES or bool(POSES.match(key))
+    return key in MATRIX_KEYS or bool(POSE_KEY.match(key))
 
 
 def head_of(
@@ -48,7 +50,7 @@ def head_of(
         )
         return in_degrees(found, {}, notes), used
     keys = dict.fromkeys(key for frame in frames for key in frame if is_pose(key))
-    for key in sorted(keys, key=lambda key: key not in MATRICES):
+    for key in sorted(keys, key=lambda key: key not in MATRIX_KEYS):
         values = [frame.get(key) for frame in frames]
         matrices = [_matrix(value) for value in values]
         if all(matrix is None for matrix in matrices):
@@ -71,14 +73,14 @@ def _named_angles(
         for key, value in frame.items():
             if isinstance(value, dict) and is_pose(key):
                 inner = {letters_of(each): angle for each, angle in value.items()}
-                if not any(ANGLE.match(each) for each in inner):
+                if not any(ANGLE_NAME.match(each) for each in inner):
                     continue
-            elif ANGLE.match(key) or angle_of(key):
+            elif ANGLE_NAME.match(key) or angle_of(key):
                 inner = {key: value}
             else:
                 continue
             for each, angle in inner.items():
-                match = ANGLE.match(each)
+                match = ANGLE_NAME.match(each)
                 name = f"head_{match[1]}" if match else angle_of(each)
                 if name is None or not _is_number(angle):
                     continue

@@ -27,9 +27,9 @@ from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
 
 # Keys without capitals and underscores, see `_plain`.
-FACES = ("faceblendshapes", "blendshapes", "categories")
-FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
-RATES = ("fps", "exportfps", "framerate")
+FACE_KEYS = ("faceblendshapes", "blendshapes", "categories")
+FRAME_KEYS = ("frames", "results", "data", "recording", "samples", "records", "weights")
+RATE_KEYS = ("fps", "exportfps", "framerate")
 MOST_LEVELS = 4  # nested tables that are searched for a face
 
 
@@ -93,7 +93,7 @@ def _named_rows(document: Any) -> list[Any]:
     names = next(filter(_are_names, lists), None)
     if names is None:
         return _frames_over_time(_columns(document))
-    row_keys = ("weightmat", *FRAMES, "rows", "values")
+    row_keys = ("weightmat", *FRAME_KEYS, "rows", "values")
     lists = [table.get(key) for key in row_keys for table in tables]
     rows = next((each for each in lists if isinstance(each, list) and each is not names), [])
     beside = {
@@ -158,7 +158,7 @@ def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
         return beside | {"blendshapes": shapes}
     frame = dict(row)
     # Names for the weights of one frame.
-    weight_keys = ("weights", "values", "coefficients", "scores", *FACES)
+    weight_keys = ("weights", "values", "coefficients", "scores", *FACE_KEYS)
     for key in row:
         if _plain_name(key) in weight_keys and isinstance(row[key], list):
             del frame[key]
@@ -177,7 +177,7 @@ def _frames(document: Any) -> list[Any]:
     if isinstance(keys.get("frames"), list):
         return list(keys["frames"])
     if not _faces(document, depth=1):
-        for key in FRAMES:
+        for key in FRAME_KEYS:
             rows = keys.get(key)
             if isinstance(rows, list) and any(_faces(row) for row in rows[:1000]):
                 return rows
@@ -192,10 +192,10 @@ def _faces(frame: Any, depth: int = MOST_LEVELS) -> list[dict[str, float]]:
         if found:
             return [found]
         keys = _with_plain_keys(frame)
-        faces = _faces(_first(keys, FACES), depth)
+        faces = _faces(_first(keys, FACE_KEYS), depth)
         if faces or depth <= 1:
             return faces
-        inner = (_faces(item, depth - 1) for key, item in keys.items() if key not in FACES)
+        inner = (_faces(item, depth - 1) for key, item in keys.items() if key not in FACE_KEYS)
         return next(filter(None, inner), [])
     if isinstance(frame, list):
         categories = [_category(item) for item in frame]
@@ -212,7 +212,7 @@ def _flat(frame: Any, depth: int = MOST_LEVELS) -> dict[str, Any]:
     keys = _with_plain_keys(frame)
     found: dict[str, Any] = {}
     for key, value in keys.items():
-        if shape_of(key) or key in FACES or value in ("", None) or value == []:
+        if shape_of(key) or key in FACE_KEYS or value in ("", None) or value == []:
             continue
         if depth > 1 and isinstance(value, dict | list) and _faces(value, depth - 1):
             found = _flat(value, depth - 1) | found
@@ -225,7 +225,7 @@ def _is_left_out(key: str) -> bool:
     """Whether a key of frames has an unknown meaning, which the report mentions."""
     is_known = is_flag(key) or is_frame(key) or stamp_of(key) is not None
     useless_names = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
-    return not (is_known or key in useless_names or key in RATES)
+    return not (is_known or key in useless_names or key in RATE_KEYS)
 
 
 def _category(item: Any) -> tuple[str, float] | None:
@@ -297,7 +297,7 @@ def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
 
 def _rate(document: Any) -> float | None:
     """Return the frames per second in the document or its header; None if there are none."""
-    rates = [_number(_first(table, RATES)) for table in _tables(document)]
+    rates = [_number(_first(table, RATE_KEYS)) for table in _tables(document)]
     return next((rate for rate in rates if 1.0 <= rate <= 1000.0), None)
 
 

@@ -21,17 +21,17 @@ from .take import Take, TakeRequest
 from .timing import times_of
 from .values import intensities, rows_without_face, without_rows
 
-INTENSITY = re.compile(r"au(\d\d)_r$")
-PRESENCE = re.compile(r"au(\d\d)_c$")
-GAZE = ("gaze_angle_x", "gaze_angle_y")
-VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
+INTENSITY_NAME = re.compile(r"au(\d\d)_r$")
+PRESENCE_NAME = re.compile(r"au(\d\d)_c$")
+GAZE_ANGLES = ("gaze_angle_x", "gaze_angle_y")
+GAZE_VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
 
 
 def recognises(names: tuple[str, ...]) -> bool:
     """Whether these are columns of OpenFace; many tools keep only some of them."""
     folded = {name.casefold() for name in names}
-    units = [name for name in folded if INTENSITY.match(name) or PRESENCE.match(name)]
-    own = folded & {"success", "confidence", "pose_rx", *GAZE, *VECTORS}
+    units = [name for name in folded if INTENSITY_NAME.match(name) or PRESENCE_NAME.match(name)]
+    own = folded & {"success", "confidence", "pose_rx", *GAZE_ANGLES, *GAZE_VECTORS}
     has_sides = any(re.match(r"au\d\d_l(eft)?$", name) for name in folded)
     return bool(units) and not has_sides and (bool(own) or len(units) > 1)
 
@@ -42,15 +42,17 @@ def read(table: Table, request: TakeRequest) -> Take:
     notes: list[str] = []
     times, _ = times_of(table, request.rate, notes)
     places = table.places
-    found = {f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))}
-    presences = {f"AU{int(m[1])}": n for name, n in places.items() if (m := PRESENCE.match(name))}
+    found = {f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY_NAME.match(name))}
+    presences = {
+        f"AU{int(m[1])}": n for name, n in places.items() if (m := PRESENCE_NAME.match(name))
+    }
     only_present = {name: n for name, n in presences.items() if name not in found}
     pose_columns = {
         "pose_rx": ("head_pitch", -1.0),
         "pose_ry": ("head_yaw", -1.0),
         "pose_rz": ("head_roll", 1.0),
     }
-    others = [n for n in (*pose_columns, *GAZE, *VECTORS) if n in places]
+    others = [n for n in (*pose_columns, *GAZE_ANGLES, *GAZE_VECTORS) if n in places]
     wanted = found | only_present | {name: places[name] for name in others}
     numbers = table.numbers_of(wanted)
 
@@ -88,10 +90,10 @@ def _eyes(
 
     The median is subtracted: people look at a screen below the camera, so the gaze is never 0.
     """
-    if set(GAZE) <= numbers.keys():
-        across = numbers[GAZE[0]]
-        down = numbers[GAZE[1]]
-    elif set(VECTORS) <= numbers.keys():
+    if set(GAZE_ANGLES) <= numbers.keys():
+        across = numbers[GAZE_ANGLES[0]]
+        down = numbers[GAZE_ANGLES[1]]
+    elif set(GAZE_VECTORS) <= numbers.keys():
         x, y, z = (numbers[f"gaze_0_{each}"] + numbers[f"gaze_1_{each}"] for each in "xyz")
         across = np.arctan2(x, -z)
         down = np.arctan2(y, -z)

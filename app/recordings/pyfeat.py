@@ -25,15 +25,15 @@ from .take import Take, TakeRequest
 from .timing import times_of
 from .values import intensities, rows_without_face, shares, without_rows
 
-UNIT = re.compile(r"au(\d\d)$")
-POSE = ("pitch", "yaw", "roll")
+UNIT_NAME = re.compile(r"au(\d\d)$")
+POSE_ANGLES = ("pitch", "yaw", "roll")
 
 
 def recognises(names: tuple[str, ...]) -> bool:
     """Whether these are columns of py-feat."""
     folded = {name.casefold() for name in names}
     box_columns = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
-    return bool(folded & box_columns) and any(UNIT.match(name) for name in folded)
+    return bool(folded & box_columns) and any(UNIT_NAME.match(name) for name in folded)
 
 
 def read(table: Table, request: TakeRequest) -> Take:
@@ -42,7 +42,7 @@ def read(table: Table, request: TakeRequest) -> Take:
     notes: list[str] = []
     times, _ = times_of(table, request.rate, notes)
     places = table.places
-    units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT.match(name))}
+    units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT_NAME.match(name))}
     shapes = {shape: n for name, n in places.items() if (shape := shape_of(name))}
     unseen_shapes = (
         "cheekPuff",
@@ -59,7 +59,7 @@ def read(table: Table, request: TakeRequest) -> Take:
             "Shapes and action units measure the same face: the shapes were used, and AU6 and AU9, "
             "for which the file has no shapes."
         )
-    others = {name: places[name] for name in ("facescore", *POSE) if name in places}
+    others = {name: places[name] for name in ("facescore", *POSE_ANGLES) if name in places}
     wanted = units | shapes | others
     numbers = table.numbers_of(wanted)
     channels = intensities({name: numbers[name] for name in units}, notes)
@@ -79,7 +79,7 @@ def read(table: Table, request: TakeRequest) -> Take:
 
 def _head(numbers: dict[str, Floats64], is_second: bool, notes: list[str]) -> dict[str, Floats64]:
     """Convert the head's angles to degrees, from the units and signs of any version."""
-    pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
+    pose = {n: numbers[n] for n in POSE_ANGLES if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:
         return {}
     size = max(float(np.nanpercentile(np.abs(values), 90)) for values in pose.values())

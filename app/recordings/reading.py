@@ -36,9 +36,9 @@ DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest
     (mediapipe_json.recognises, mediapipe_json.read),
 )
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
-BEGINNING = 2**16  # [bytes] read to recognise a recording; a header of 2183 names fits
+BEGINNING_SIZE = 2**16  # [bytes] read to recognise a recording; a header of 2183 names fits
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
-JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no TOML script begins like this
+JSON_START = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no TOML script begins like this
 SPEAKS_OF_FACES = re.compile(
     r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
     r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?|(viseme_)?(pp|sil))"',
@@ -69,7 +69,7 @@ def _read_text(text: str, path: Path, request: TakeRequest) -> Take:
         "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
         "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
     )
-    if JSON.match(text):
+    if JSON_START.match(text):
         try:
             document = parsed_json(text)
         except ValueError as error:
@@ -91,7 +91,7 @@ def is_recording(path: Path) -> bool:
     False for scripts, heads and binary files.
     """
     text = read_beginning(path)
-    if JSON.match(text):
+    if JSON_START.match(text):
         return bool(SPEAKS_OF_FACES.search(text))
     names = header_of(text)
     return any(recognises(names) for recognises, _ in TABLES)
@@ -125,7 +125,7 @@ def read_recording(path: Path) -> tuple[str, str]:
 def read_beginning(path: Path) -> str:
     """Read the first lines of a file; return "" for a missing file, or a file without text."""
     try:
-        content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
+        content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING_SIZE)
     except UserError:
         return ""
     return _decoded(content)[0] or ""
@@ -138,7 +138,7 @@ def _decoded(content: bytes) -> tuple[str | None, str]:
     """
     codec, encoding = _encoding_of(content)
     text = content.decode(codec, errors="replace")
-    if NOT_IN_TEXT.search(text, 0, BEGINNING):
+    if NOT_IN_TEXT.search(text, 0, BEGINNING_SIZE):
         return None, encoding
     return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
 
@@ -151,7 +151,7 @@ def _encoding_of(content: bytes) -> tuple[str, str]:
         return "utf-16", "UTF-16"
     # In UTF-16 without a mark, every second byte of Western text is 0.
     for codec, first in (("utf-16-be", 0), ("utf-16-le", 1)):
-        beginning = content[first:BEGINNING:2]
+        beginning = content[first:BEGINNING_SIZE:2]
         if 2 * beginning.count(0) > len(beginning):
             return codec, "UTF-16"
     try:

@@ -6,7 +6,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Flags, Floats64
 
-DAY = 86_400.0  # [s]
+DAY_LENGTH = 86_400.0  # [s]
 
 
 def frame_times(

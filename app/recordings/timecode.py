@@ -12,9 +12,9 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from .row_times import DAY, frame_times, mostly_rises, spread
+from .row_times import DAY_LENGTH, frame_times, mostly_rises, spread
 
-TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
+TIMECODE_FORM = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
 
 
 def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Floats64:
@@ -25,12 +25,13 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
     parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
     has_semicolon = False
     for row, cell in enumerate(cells):
-        if found := TIMECODE.match(cell):
+        if found := TIMECODE_FORM.match(cell):
             parts[row] = [float(part) for part in found.group(1, 2, 3, 5)]
             has_semicolon = has_semicolon or found[4] == ";"
     numbers = parts[:, 3].copy()
     known = np.isfinite(numbers)
-    seconds = np.unwrap(parts[known, :3] @ (3600.0, 60.0, 1.0), period=DAY)  # also over midnight
+    clock = parts[known, :3] @ (3600.0, 60.0, 1.0)
+    seconds = np.unwrap(clock, period=DAY_LENGTH)  # also over midnight
     base, is_sure = _base_of(seconds, numbers[known])
     pace = base  # true frames a second: 29.97 for a timecode that counts to 30
     if rate is not None:

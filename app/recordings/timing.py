@@ -17,11 +17,11 @@ import numpy as np
 from risorius.geometry.arrays import Floats64
 
 from .names import letters_of
-from .row_times import DAY, frame_times, mostly_rises, spread
+from .row_times import DAY_LENGTH, frame_times, mostly_rises, spread
 from .table import Table
-from .timecode import TIMECODE, timecode_times, with_colons
+from .timecode import TIMECODE_FORM, timecode_times, with_colons
 
-CLOCK = re.compile(
+CLOCK_FORM = re.compile(
     r"""(?:(?P<days>-?\d+)\s+days?,?\s+\+?)?
         (?:(?P<date>\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4})[T\s,]+)?
         (?:(?P<hours>\d{1,4}):)?(?P<minutes>\d{1,4}):(?P<seconds>\d{1,2}(?:[.,]\d+)?)
@@ -33,12 +33,12 @@ COMPACT_CLOCK = re.compile(  # ISO 8601 in its basic form
     r"(\d{4})(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d(?:[.,]\d+)?)(Z|[-+]\d\d(?::?\d\d)?)?$",
     re.IGNORECASE,
 )
-DURATION = re.compile(  # ISO 8601's durations
+DURATION_FORM = re.compile(  # ISO 8601's durations
     r"(?P<sign>[-+]?)P(?=.*\d)(?:(?P<days>[\d.,]+)D)?"
     r"(?:T(?:(?P<hours>[\d.,]+)H)?(?:(?P<minutes>[\d.,]+)M)?(?:(?P<seconds>[\d.,]+)S)?)?$",
     re.IGNORECASE,
 )
-MEASURED = re.compile(
+MEASURED_FORM = re.compile(
     r"(?P<number>[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[-+]?\d+)?)\s*(?P<unit>[a-zµμ]+)$",
     re.IGNORECASE,
 )
@@ -173,7 +173,7 @@ def find_times(
         cells = with_colons(texts(name))
         sample = [cell for cell in cells if cell][:sample_size]
         times: Floats64 | None = None
-        if sum(bool(TIMECODE.match(cell)) for cell in sample) * 2 > len(sample):
+        if sum(bool(TIMECODE_FORM.match(cell)) for cell in sample) * 2 > len(sample):
             times = timecode_times(cells, rate, notes)
         elif rate is not None:
             continue
@@ -198,14 +198,14 @@ def _is_clock(cell: str) -> bool:
 
 def _measured(cell: str) -> float | None:
     """Return the seconds in `33 ms`, `0.033 s` or ISO 8601's `PT0.033S`; None for other cells."""
-    if found := MEASURED.match(cell):
+    if found := MEASURED_FORM.match(cell):
         spelled = found["unit"].casefold().replace("µ", "u").replace("μ", "u")
         unit = SPELLED_UNITS.get(spelled) or SPELLED_UNITS.get(f"{spelled}s")
         return None if unit is None else float(found["number"].replace(",", ".")) * unit
-    found = DURATION.match(cell)
+    found = DURATION_FORM.match(cell)
     if not found:
         return None
-    lengths = {"days": DAY, "hours": 3600.0, "minutes": 60.0, "seconds": 1.0}
+    lengths = {"days": DAY_LENGTH, "hours": 3600.0, "minutes": 60.0, "seconds": 1.0}
     try:
         parts = [
             float((found[part] or "0").replace(",", ".")) * length
@@ -280,7 +280,7 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 |
     days = np.zeros(len(cells))
     for row, cell in enumerate(cells):
         spread_out = COMPACT_CLOCK.sub(r"\1-\2-\3T\4:\5:\6\7", cell)
-        if found := CLOCK.match(spread_out):
+        if found := CLOCK_FORM.match(spread_out):
             seconds[row] = _seconds_of_day(found)
             days[row] = _day_of(found)
     known = np.isfinite(seconds)
@@ -288,9 +288,9 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 |
         notes.append(f"The times in '{name}' cannot be read, and were not used.")
         return None
     if days[known].any():  # timedelta's days go below 0
-        seconds[known] += DAY * (days[known] - days[known].min())
+        seconds[known] += DAY_LENGTH * (days[known] - days[known].min())
     else:
-        seconds[known] = np.unwrap(seconds[known], period=DAY)
+        seconds[known] = np.unwrap(seconds[known], period=DAY_LENGTH)
     if len(cells) == 1:
         return None
     seconds = spread(seconds, notes)
@@ -302,7 +302,7 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Floats64 |
 
 
 def _seconds_of_day(found: re.Match[str]) -> float:
-    """Return the seconds since midnight, or since the beginning, from a match of CLOCK."""
+    """Return the seconds since midnight, or since the beginning, from a match of CLOCK_FORM."""
     hours = int(found["hours"] or 0)
     if found["half"]:
         hours = hours % 12 + (12 if found["half"][0] in "pP" else 0)
@@ -311,7 +311,7 @@ def _seconds_of_day(found: re.Match[str]) -> float:
 
 
 def _day_of(found: re.Match[str]) -> int:
-    """Return the number of the day in a match of CLOCK; 0 if the day is unknown."""
+    """Return the number of the day in a match of CLOCK_FORM; 0 if the day is unknown."""
     if found["days"]:
         return int(found["days"])
     parts = re.split("[-/.]", found["date"] or "")

@@ -19,10 +19,10 @@ from .names import ARKIT, LARGEST_VALUE, letters_of, measured
 
 Rows = npt.NDArray[np.bool_]
 
-COUNT = "blendshapecount"  # number of values in a row
+COUNT_COLUMN = "blendshapecount"  # number of values in a row
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
-ZERO = 1e-6
+ZERO_TOLERANCE = 1e-6
 
 
 def is_flag(name: str) -> bool:
@@ -48,7 +48,7 @@ def is_flag(name: str) -> bool:
         "detectionconfidence",
         "trackingconfidence",
     )
-    return letters in sure_flags or letters == COUNT
+    return letters in sure_flags or letters == COUNT_COLUMN
 
 
 def rows_without_face(
@@ -65,7 +65,7 @@ def rows_without_face(
     least_confidence = 0.5  # a flag is 0 or 1; a lower confidence means no face
     for name in plain or flags:
         values = np.array([_flag_in(cell) for cell in texts(name)])
-        if letters_of(name) == COUNT:
+        if letters_of(name) == COUNT_COLUMN:
             is_lost = values == 0.0
             if is_lost.all():  # the program does not count
                 continue
@@ -130,7 +130,7 @@ def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
     Rows without a face, which are NaN, are ignored.
     """
     resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
-    at_zero = [values[np.isfinite(values)] <= ZERO for values in resting]
+    at_zero = [values[np.isfinite(values)] <= ZERO_TOLERANCE for values in resting]
     calibrated = sum(bool(rows.size and np.mean(rows) > 0.2) for rows in at_zero) >= 3
     if calibrated and len(shapes) == len(ARKIT):
         notes.append("The take is calibrated: its neutral face is at 0.")
@@ -166,7 +166,7 @@ def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Rows:
         return np.zeros(0, dtype=bool)
     table = np.stack([*shapes.values()])
     is_empty = np.all(np.isnan(table), axis=0)
-    is_zero = np.all(np.abs(np.nan_to_num(table)) <= ZERO, axis=0)
+    is_zero = np.all(np.abs(np.nan_to_num(table)) <= ZERO_TOLERANCE, axis=0)
     is_zero &= ~is_empty
     others = ~(is_zero | is_empty)
     nowhere = np.zeros(len(is_zero), dtype=bool)

@@ -14,7 +14,7 @@ import scipy
 from risorius.geometry.arrays import Floats32, Floats64
 
 from ..motion.curves import ARKIT_SHAPES, solved
-from ..playback import LEAD
+from ..playback import LEAD_TIME
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT
 from ..scenes import Scene
@@ -26,7 +26,7 @@ def as_seen(times: Floats64, curves: Mapping[str, Floats64]) -> dict[str, Floats
     times: [s], (N,).
     """
     return {
-        name: np.interp(times - lead_of(name, LEAD), times, values)
+        name: np.interp(times - lead_of(name, LEAD_TIME), times, values)
         for name, values in curves.items()
     }
 

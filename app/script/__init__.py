@@ -26,7 +26,7 @@ from risorius.schema import REST_KEY, OneOf, Record, Within, called
 from ..control_names import meant_by
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from .easings import ALLOWED, Easing, easing_named, easing_names, hermite, shares_of
+from .easings import ALLOWED_EASINGS, Easing, easing_named, easing_names, hermite, shares_of
 
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
@@ -36,7 +36,7 @@ POSE_SECONDS = 1.0  # duration of a script that is one pose
 LARGEST_NUMBER = 86_400.0  # largest number in a script; as a time [s] it is a day
 Number = Annotated[float, Within(-LARGEST_NUMBER, LARGEST_NUMBER)]
 Moment = Annotated[float, Within(0.0, LARGEST_NUMBER)]
-EasingName = Annotated[str, OneOf(easing_names, ALLOWED)]
+EasingName = Annotated[str, OneOf(easing_names, ALLOWED_EASINGS)]
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ EASINGS = {
     "ease-out": Easing(20, 0),  # starts at speed, arrives softly
     "hold": Easing(0, 0, True),
 }
-ALLOWED = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, such as '0.5,2'"
+ALLOWED_EASINGS = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, such as '0.5,2'"
 _WORDS = {easing: name for name, easing in EASINGS.items()}
 
 
@@ -90,7 +90,7 @@ def easing_named(name: str) -> Easing:
         return EASINGS[name]
     start, end = map(float, name.split(","))
     if free_easing(start, end) != name:
-        raise ValueError(f"easing: was '{name}', must be {ALLOWED}")
+        raise ValueError(f"easing: was '{name}', must be {ALLOWED_EASINGS}")
     return Easing(round(10 * start), round(10 * end))
 
 

@@ -21,7 +21,7 @@ from .easings import easing_named
 from .key_sets import KeySet, is_any_of
 
 POSES = ""  # the track of whole poses; any other track has its control's name
-FRAME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
+FRAME_TIME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
 TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
@@ -38,12 +38,12 @@ def all_keys(script: Script) -> KeySet:
 
 def on_frame(time: float) -> float:
     """Return the time of the nearest frame [s]."""
-    return rounded(round(time / FRAME) * FRAME)
+    return rounded(round(time / FRAME_TIME) * FRAME_TIME)
 
 
 def key_time(script: Script, time: float) -> float:
     """Return the time of a key within half a frame [s], or else of the nearest frame."""
-    near = all_keys(script).nearest(time, 0.5 * FRAME)
+    near = all_keys(script).nearest(time, 0.5 * FRAME_TIME)
     return near.first if near else on_frame(time)
 
 
@@ -143,7 +143,7 @@ def raised(
 def with_duration(script: Script, seconds: float) -> Script:
     """Change the duration [s] of a script, which still includes all named poses."""
     ends = [pose.time for pose in script.key_poses]
-    return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST_NUMBER))
+    return replace(script, duration=min(max(on_frame(seconds), FRAME_TIME, *ends), LARGEST_NUMBER))
 
 
 def differing(script: Script, time: float, values: ControlValues) -> list[str]:

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..control_names.limits import ControlValues
 from . import Channel, Key, Script, rounded
-from .keyframes import FRAME, differing
+from .keyframes import FRAME_TIME, differing
 from .thinning import thinned
 
-RELEASE = 0.1  # [s] at the recording's end in which a control returns to the script
+RELEASE_TIME = 0.1  # [s] at the recording's end in which a control returns to the script
 
 
 class Recorder:
@@ -88,12 +88,12 @@ class Recorder:
         old = self._played.tracks.get(name, Channel([], []))
         start = rounded(taken.times[0])
         end = rounded(self.time)
-        is_last = end >= self._played.duration - FRAME
+        is_last = end >= self._played.duration - FRAME_TIME
         head = [key for key in old.keys if key.time < start]
         tail = [key for key in old.keys if key.time > end]
         keys = list(taken.keys)
         if tail or not is_last:
-            free = rounded(max(end - RELEASE, 0.5 * (start + end)))
+            free = rounded(max(end - RELEASE_TIME, 0.5 * (start + end)))
             keys = [key for key in keys if key.time < free]
             keys.append(Key(free, taken.value(free), "linear"))
             keys.append(Key(end, self._track_value(name, end), "linear"))

@@ -41,7 +41,7 @@ from . import (
     Script,
     rounded,
 )
-from .easings import ALLOWED, Easing, easing_named
+from .easings import ALLOWED_EASINGS, Easing, easing_named
 
 
 def _channel(entries: Any) -> Channel:
@@ -75,7 +75,7 @@ def _channel_of_lines(text: str) -> Channel:
         except ValueError:
             raise ValueError(
                 f"key {number}: was {quoted(' '.join(words))}, must be a time, a value and perhaps "
-                f"an easing: {ALLOWED}"
+                f"an easing: {ALLOWED_EASINGS}"
             ) from None
     channel = Channel(times, values, np.array(easings).reshape(-1, 3))
     is_wrong = ~(np.abs(channel.values) <= LARGEST_NUMBER) | ~(channel.times <= LARGEST_NUMBER)

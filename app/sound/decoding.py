@@ -23,8 +23,8 @@ from ..files import read_bytes
 if TYPE_CHECKING:
     from ..script import Script
 
-RATE = 48_000  # [samples/s] of sounds, also on devices and in films
-PATIENCE = 300.0  # [s] for ffmpeg to read a file
+SAMPLE_RATE = 48_000  # [samples/s] of sounds, also on devices and in films
+FFMPEG_TIMEOUT = 300.0  # [s] for ffmpeg to read a file
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Sound:
 
     file: Path
     samples: npt.NDArray[np.int16]
-    rate: int = RATE
+    rate: int = SAMPLE_RATE
 
     @property
     def duration(self) -> float:
@@ -98,11 +98,11 @@ def ffmpeg() -> str:
 
 
 def sound_form() -> tuple[str, ...]:
-    """Return ffmpeg's options for a sound at `RATE`, in stereo if it has two channels.
+    """Return ffmpeg's options for a sound at `SAMPLE_RATE`, in stereo if it has two channels.
 
     If the sound begins late in its file, as it may in a film, the samples begin equally late.
     """
-    form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
+    form = f"aformat=sample_rates={SAMPLE_RATE}:channel_layouts=mono|stereo"
     return "-af", f"aresample=async=1:first_pts=0,{form}"
 
 
@@ -124,12 +124,12 @@ def load_sound(file: Path) -> Sound:
             [name, "-v", "error", "-nostdin", *source, *form, "-"],
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=PATIENCE,
+            timeout=FFMPEG_TIMEOUT,
         )
     except OSError as error:
         raise UserError(f"no sound without ffmpeg: {name}: {error.strerror}") from None
     except subprocess.TimeoutExpired:
-        raise UserError(f"{file}: ffmpeg did not read it within {PATIENCE:g} s") from None
+        raise UserError(f"{file}: ffmpeg did not read it within {FFMPEG_TIMEOUT:g} s") from None
     samples = _samples(heard.stdout)
     if not samples.size:
         raise UserError(

@@ -28,8 +28,8 @@ try:
 except ImportError:  # no wheel for this machine; everything else works without
     miniaudio = None
 
-PERIOD = 0.04  # [s] of samples in one request
-PERIODS = 3  # periods that the device buffers before new samples are heard
+PERIOD_TIME = 0.04  # [s] of samples in one request
+PERIOD_COUNT = 3  # periods that the device buffers before new samples are heard
 Samples = npt.NDArray[np.int16]
 
 
@@ -74,8 +74,8 @@ class Player:
         (when, asked_for, given) = self._asked
         if part is None or asked_for is not part:
             return part.start if part is not None else 0.0
-        since = min(self._clock() - when, 2.0 * PERIOD)  # a stuck device stays where it is
-        heard = given - (PERIODS - 1) * PERIOD + since
+        since = min(self._clock() - when, 2.0 * PERIOD_TIME)  # a stuck device stays where it is
+        heard = given - (PERIOD_COUNT - 1) * PERIOD_TIME + since
         return part.start + max(heard, 0.0) * part.speed
 
     @property
@@ -154,8 +154,8 @@ def open_device(rate: int, channels: int) -> Any:
             output_format=miniaudio.SampleFormat.SIGNED16,
             nchannels=channels,
             sample_rate=rate,
-            buffersize_msec=round(1000.0 * PERIOD),
-            callback_periods=PERIODS,
+            buffersize_msec=round(1000.0 * PERIOD_TIME),
+            callback_periods=PERIOD_COUNT,
             backends=backends(),
             app_name="Risorius",
         )

@@ -26,7 +26,7 @@ from risorius.schema import (
     read_valid_entries,
 )
 
-from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
+from ..anatomy import OPACITY, SIDE_SIGNS, SKIN_ALONE, STRUCTURES, AnatomyView
 from ..capture.outputs import FORMATS as FILMS
 from ..errors import UserError
 from ..export.formats import FORMATS as MOTION
@@ -129,7 +129,7 @@ class Display(Record):
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Opacity of the skin over muscles and skull, and the side of the face that shows these.
     skin_opacity: Fraction = OPACITY
-    dissect: Annotated[str, OneOf(SIDES)] = "both"
+    dissect: Annotated[str, OneOf(SIDE_SIGNS)] = "both"
 
     @property
     def anatomy(self) -> AnatomyView:

@@ -31,7 +31,7 @@ from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .border_turn import BorderTurn
 from .experiments import Outcome
 
-FINER = 2  # factor on the resolution of drawn pixels
+SUPERSAMPLING = 2  # factor on the resolution of drawn pixels
 SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 MOUTH = 1  # channel of a picture of kinds: skin, mouth, background
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -71,7 +71,7 @@ class Cell(Shot):
     """The picture of one expression in one variant."""
 
     title: str
-    kinds: Unsigned8  # skin, mouth, background, FINER times as fine, (H, W)
+    kinds: Unsigned8  # skin, mouth, background; SUPERSAMPLING times as fine, (H, W)
 
     def wrong(self, truth: Cell) -> Flags:
         """Flags of fine pixels in which only one of both pictures shows the mouth's opening."""
@@ -144,7 +144,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
         refiners.append((variant.title, bound, len(head.vertices)))
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append(("dense mesh", dense, len(fine.vertices)))
-    with Canvas((FINER * size[0], FINER * size[1])) as canvas:
+    with Canvas((SUPERSAMPLING * size[0], SUPERSAMPLING * size[1])) as canvas:
         parts_at_lids = "lashes", "wet_edges"  # far from the lips
         kinds_style = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
         viewpoints = (
@@ -186,7 +186,7 @@ def _in_green(part: HeadPart) -> Part:
 
 
 def _smaller(image: Image) -> Image:
-    """Reduce a picture FINER times, to its final size."""
-    height = image.shape[0] // FINER
-    width = image.shape[1] // FINER
+    """Reduce a picture SUPERSAMPLING times, to its final size."""
+    height = image.shape[0] // SUPERSAMPLING
+    width = image.shape[1] // SUPERSAMPLING
     return np.asarray(PIL.Image.fromarray(image).resize((width, height), LANCZOS))

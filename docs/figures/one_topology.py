@@ -10,7 +10,7 @@ from __future__ import annotations
 import figures
 import numpy as np
 import numpy.typing as npt
-from refinement import INK, NEW, PAPER, SECOND, Colour, Diagram
+from refinement import INK, NEW_COLOUR, PAPER, SECOND_COLOUR, Colour, Diagram
 
 from risorius import assets, refine, sim
 from risorius.app.pictures import Image
@@ -83,10 +83,10 @@ def one_topology() -> Image:
         if panel == 0:
             marked = numbered(mesh, refiner.vertex_capacity)
         for vertex in marked:
-            diagram.disc(places[vertex], SECOND, 3.2)
+            diagram.disc(places[vertex], SECOND_COLOUR, 3.2)
             diagram.text(places[vertex] + [0.0, 11.0], str(vertex), INK, 12.0)
         words = f"{expression}: {mesh.vertex_count} vertices, {mesh.triangle_count} triangles"
-        diagram.text((left + PANEL[0] / 2.0, CAPTION / 2.0), words, NEW, 13.0)
+        diagram.text((left + PANEL[0] / 2.0, CAPTION / 2.0), words, NEW_COLOUR, 13.0)
     return diagram.image()
 
 

@@ -16,7 +16,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Shot, Studio
 from risorius.app.passes.labels import labelled
-from risorius.app.passes.passes import NAMES, Passes
+from risorius.app.passes.passes import PASS_NAMES, Passes
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
@@ -37,7 +37,7 @@ def passes(size: tuple[int, int] = (440, 500)) -> Image:
         scene.step(settling_time)
         picture = studio.draw_image()
         drawn = Passes(studio.pipeline, studio.viewports[-1].drawn)
-        known = labelled(scene, drawn, studio.camera, studio.options.style, NAMES)
+        known = labelled(scene, drawn, studio.camera, studio.options.style, PASS_NAMES)
     images = known.images
     on = images["depth"] > 0.0
     colours_of_segments = {

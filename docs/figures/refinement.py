@@ -26,9 +26,9 @@ Points = npt.NDArray[np.float64]
 
 PAPER = (255, 255, 255)
 INK = (32, 34, 40)
-FILL = (236, 240, 245)
-NEW = (0, 114, 178)
-SECOND = (213, 94, 0)
+FILL_COLOUR = (236, 240, 245)
+NEW_COLOUR = (0, 114, 178)
+SECOND_COLOUR = (213, 94, 0)
 Colour = tuple[int, int, int]
 Place = npt.ArrayLike
 
@@ -96,13 +96,13 @@ def new_points(splits: tuple[int, int, int]) -> list[int]:
 def triangulation(diagram: Diagram, corners: Points, splits: tuple[int, int, int]) -> None:
     """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
-    diagram.polygon(list(corners), FILL)
+    diagram.polygon(list(corners), FILL_COLOUR)
     sides = {(min(a, b), max(a, b)) for t in subdivide(splits) for a, b in pairwise((*t, t[0]))}
     for a, b in sorted(sides):
         diagram.line([points[a], points[b]])
     for number in new_points(splits):
         is_middle = number % 3 == 0
-        diagram.disc(points[number], NEW if is_middle else SECOND, 2.6)
+        diagram.disc(points[number], NEW_COLOUR if is_middle else SECOND_COLOUR, 2.6)
 
 
 def cases() -> Image:
@@ -126,11 +126,11 @@ def lookup() -> Image:
     diagram = Diagram(760, 250)
     corners = equilateral((140, 125), 200)
     points = points_in(corners)
-    diagram.polygon(list(corners), FILL)
+    diagram.polygon(list(corners), FILL_COLOUR)
     diagram.line([*corners, corners[0]])
     centre = corners.mean(axis=0)
     for number, point in enumerate(points):
-        colour = INK if number < 3 else NEW if number % 3 == 0 else SECOND
+        colour = INK if number < 3 else NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
         diagram.disc(point, colour)
         outward = point - centre
         diagram.text(point + 13 * outward / np.linalg.norm(outward), str(number), colour, 12)

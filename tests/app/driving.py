@@ -15,7 +15,7 @@ from imgui_bundle import imgui
 
 from risorius.app.script.key_sets import KeyId
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.physics import STEP_TIME
 from risorius.app.viewer.session.session import Session
 
 import glfw  # isort: skip - after imgui_bundle, which the viewer imports
@@ -84,7 +84,7 @@ def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEAD
 def run(session: Session, steps: int) -> None:
     """Simulate this number of time steps, without a window."""
     for _ in range(steps):
-        session.advance(STEP)
+        session.advance(STEP_TIME)
 
 
 def set_by_hand(session: Session, **values: float) -> None:

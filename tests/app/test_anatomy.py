@@ -11,7 +11,7 @@ from pytest import approx
 
 from risorius import render
 from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
-from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
+from risorius.app.anatomy.muscle_bands import ROW_COUNT, SECTION_POINTS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import FaceScene
@@ -105,11 +105,11 @@ def test_muscles_swell_and_redden_as_they_contract():
 
     def belly(name):
         """The area [mm2] and the redness of the muscle's middle cross section."""
-        first = names.index(name) * ROWS * AROUND + ROWS // 2 * AROUND
-        ring = muscles.vertices[first : first + AROUND].astype(float)
+        first = names.index(name) * ROW_COUNT * SECTION_POINTS + ROW_COUNT // 2 * SECTION_POINTS
+        ring = muscles.vertices[first : first + SECTION_POINTS].astype(float)
         middle = ring - ring.mean(axis=0)
         area = norm(np.cross(middle, np.roll(middle, -1, axis=0)).sum(axis=0))
-        red, green, _ = muscles.colours[first + AROUND // 4]
+        red, green, _ = muscles.colours[first + SECTION_POINTS // 4]
         return 0.5 * float(area), float(red / green)
 
     at_rest = belly("zygomaticus_major_left")
@@ -291,7 +291,7 @@ def test_muscles_of_the_nose_lie_below_its_skin(pose):
     muscles = Muscles.from_face(face)
     bands = [number for number, (name, _) in enumerate(muscles.names) if "nasalis" in name]
     assert len(bands) >= 4
-    points = muscles.vertices.reshape(-1, ROWS * AROUND, 3)[bands].reshape(-1, 3)
+    points = muscles.vertices.reshape(-1, ROW_COUNT * SECTION_POINTS, 3)[bands].reshape(-1, 3)
     skin = face.simulation.positions
     found = closest_points(points, skin, face.simulation.faces)
     normals = vertex_normals(skin, face.simulation.faces)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
-from risorius.app.dataset.table import PERSONS, load_table, paired_units
+from risorius.app.dataset.table import PERSON_COUNT, load_table, paired_units
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
@@ -46,7 +46,7 @@ def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
     for name, (low, high) in vars(TABLE.camera).items():
         if name != "shift":
             assert low <= getattr(sample.view, name) <= high
-    assert 0 <= sample.person - seed * PERSONS < TABLE.persons.count
+    assert 0 <= sample.person - seed * PERSON_COUNT < TABLE.persons.count
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))

@@ -8,7 +8,7 @@ from pytest import approx
 from risorius.app.export.clip import record
 from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.performances import read_performance
-from risorius.app.playback import LEAD, Playback
+from risorius.app.playback import LEAD_TIME, Playback
 from risorius.app.recordings.reading import read_take
 from risorius.app.script.script_file import parse_script
 
@@ -102,7 +102,7 @@ def test_arkit_shows_set_values(scene, tmp_path):
     assert np.allclose(columns["Timecode"], clip.times, atol=1e-4)
     assert set(columns["BlendShapeCount"]) == {61.0}
     for name in ("jawOpen", "mouthClose", "mouthSmileLeft", "mouthPucker", "browInnerUp"):
-        asked = [clip.script.at(max(time - LEAD, 0.0))[name] for time in clip.times]
+        asked = [clip.script.at(max(time - LEAD_TIME, 0.0))[name] for time in clip.times]
         assert np.allclose(columns[name[0].upper() + name[1:]], asked, atol=0.01), name
     assert columns["MouthSmileRight"].max() == 0.0
     assert columns["HeadYaw"].min() == approx(np.radians(-22.5), abs=0.02)

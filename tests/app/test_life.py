@@ -8,10 +8,10 @@ import pytest
 
 from risorius.app.capture.drawing import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
-from risorius.app.control_names.angles import DEGREES, GAZE
+from risorius.app.control_names.angles import DEGREES, GAZE_ANGLE
 from risorius.app.motion.life import (
     EYES_MOST,
-    LID,
+    LID_CONTROL,
     Idle,
     Life,
     looking_at,
@@ -31,8 +31,8 @@ def test_angles_are_those_of_the_rig():
     assert {name: DEGREES[f"head_{name}"] for name in ("yaw", "pitch", "roll")} == {
         name: rig["head"][f"{name}_deg"] for name in ("yaw", "pitch", "roll")
     }
-    assert {DEGREES[name] for name in DEGREES if name.startswith("gaze")} == {GAZE}
-    assert rig["eyes"]["gaze_deg"] == GAZE
+    assert {DEGREES[name] for name in DEGREES if name.startswith("gaze")} == {GAZE_ANGLE}
+    assert rig["eyes"]["gaze_deg"] == GAZE_ANGLE
 
 
 def lids_gap(scene):
@@ -69,7 +69,7 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed):
     off = []
     for time in np.arange(0.0, 600.0, 0.1):
         eyes = life.parts(time)["eyes"]
-        off.append(GAZE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
+        off.append(GAZE_ANGLE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
     assert max(off[:13]) == 0.0  # straight at the viewer at the start
     assert 0.03 < np.mean(np.array(off) > 3.0) < 0.2
     assert max(off) < 12.5
@@ -82,7 +82,7 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
     start = life_blinks(life)[0]
     scene.reset()
     open_wide = lids_gap(scene)
-    scene.pose({f"{LID}_{side}": 1.0 for side in ("left", "right")})
+    scene.pose({f"{LID_CONTROL}_{side}": 1.0 for side in ("left", "right")})
     scene.step(1.0)
     shut = lids_gap(scene)
     scene.reset()
@@ -103,7 +103,7 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
 def life_blinks(life, seconds=30.0):
     """The times in the first seconds of a life at which lids begin to close."""
     frames = range(round(60.0 * seconds))
-    drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in frames)]
+    drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID_CONTROL}_left"] for frame in frames)]
     return [frame / 60.0 for frame in frames if drawn[frame + 1] == 1.0 > drawn[frame]]
 
 
@@ -137,7 +137,7 @@ def test_a_camera_at_the_side_is_not_followed(scene):
         for yaw in range(-120, 121)
     ]
     assert np.abs(np.diff(walk)).max() < 0.2
-    assert np.abs(walk).max() <= EYES_MOST / GAZE + 1e-9
+    assert np.abs(walk).max() <= EYES_MOST / GAZE_ANGLE + 1e-9
 
 
 def _look(scene, viewer):
@@ -157,9 +157,9 @@ def test_controls_moved_by_others_are_left_alone(scene):
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
     whole = idle.amounts(NOBODY, viewer, 5.6)
-    assert {f"{LID}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
+    assert {f"{LID_CONTROL}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
     for control, gone in (
-        ("wink", LID),
+        ("wink", LID_CONTROL),
         ("gaze_horizontal", "gaze"),
         ("AU61", "gaze"),
         ("head_roll", "head"),
@@ -234,6 +234,6 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
     assert films[0][0] == films[1][0]
     assert np.array_equal(films[0][1], films[1][1])
     values = films[0][0]
-    assert max(each[f"{LID}_left"] for each in values) == 1.0
+    assert max(each[f"{LID_CONTROL}_left"] for each in values) == 1.0
     assert any(each["gaze_horizontal_left"] for each in values)
     assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]

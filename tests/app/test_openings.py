@@ -4,7 +4,7 @@ import numpy as np
 from pytest import approx
 
 from risorius import render
-from risorius.app.motion import SETTLING
+from risorius.app.motion import SETTLING_TIME
 from risorius.app.passes.passes import Passes
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
@@ -19,7 +19,7 @@ def close_picture(scene, pose, landmarks, height):
     """Brightness (H, W) and classes of pixels in a picture centred on some landmarks."""
     scene.reset()
     scene.pose(pose)
-    scene.step(SETTLING)
+    scene.step(SETTLING_TIME)
     camera = render.OrbitCamera.framing(scene.rest_positions)
     camera.target = scene.positions[scene.landmarks[landmarks]].mean(axis=0)
     camera.distance = height / (2.0 * np.tan(np.radians(0.5 * camera.field_of_view)))

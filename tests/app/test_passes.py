@@ -9,7 +9,7 @@ from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.camera import CameraLabels
 from risorius.app.passes.landmarks import JAW_COUNT, landmarks_in
-from risorius.app.passes.passes import IMAGES, Passes
+from risorius.app.passes.passes import IMAGE_PASSES, Passes
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
@@ -108,8 +108,8 @@ def test_nothing_parts_and_skin_differ(studio):
     """All passes have the same background; teeth and eyes have no triangle of the mesh."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
-    found = passes_of(studio, IMAGES)
-    assert tuple(found) == IMAGES
+    found = passes_of(studio, IMAGE_PASSES)
+    assert tuple(found) == IMAGE_PASSES
     nothing = found["depth"] == 0.0
     assert 0.3 < nothing.mean() < 0.9
     for name in ("normal", "splits", "segmentation"):

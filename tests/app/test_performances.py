@@ -10,7 +10,7 @@ from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
-from risorius.app.playback import LEAD, Playback
+from risorius.app.playback import LEAD_TIME, Playback
 from risorius.app.recordings.conversion import lead_of, script_of
 from risorius.app.recordings.take import Take
 from risorius.app.script.script_file import load_script
@@ -57,7 +57,7 @@ def test_the_default_lead_equals_the_lag_of_the_skin(face):
     take = take_of(jawOpen=0.6 * wave())
     lips = scene.landmarks[[62, 66]]
     late = {}
-    for lead in (0.0, LEAD):
+    for lead in (0.0, LEAD_TIME):
         script, _ = script_of(take, Playback(neutral="none", lead=lead), scene.limits)
         scene.reset()
         gaps = []
@@ -72,7 +72,7 @@ def test_the_default_lead_equals_the_lag_of_the_skin(face):
                 for shift in shifts]  # fmt: skip
         late[lead] = shifts[int(np.argmax(fits))]
     assert late[0.0] >= 2, "frames that the lips are late"
-    assert abs(late[LEAD]) <= 1
+    assert abs(late[LEAD_TIME]) <= 1
 
 
 def test_one_frame_is_a_pose():

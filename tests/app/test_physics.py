@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from risorius.app.performances import script_for
-from risorius.app.viewer.session.physics import STEP, FrameTimes, Physics
+from risorius.app.viewer.session.physics import STEP_TIME, FrameTimes, Physics
 from risorius.app.viewer.session.session import Session
 
 
@@ -15,12 +15,12 @@ def test_a_held_pose_comes_to_rest(face, control):
     physics = Physics(session, FrameTimes())
     session.set(control, 1.0)
     for _ in range(240):
-        physics.advance(STEP, is_skin_dragged=False)
+        physics.advance(STEP_TIME, is_skin_dragged=False)
         if physics.is_at_rest:
             break
     assert physics.is_at_rest
     rested = session.scene.positions.copy()
     for _ in range(120):
-        session.scene.step(STEP)
+        session.scene.step(STEP_TIME)
     assert np.abs(session.scene.positions - rested).max() < 0.05  # no motion was left
     assert np.abs(rested - session.scene.rest_positions).max() > 1.0

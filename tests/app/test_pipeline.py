@@ -9,7 +9,7 @@ from pytest import approx
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.motion import SETTLING
+from risorius.app.motion import SETTLING_TIME
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, PlaneScene
@@ -57,7 +57,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface):
     assert np.array_equal(*(image(pipeline, pipeline.bind(each)) for each in asked))
 
 
-@pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])
+@pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING_TIME)])
 @pytest.mark.parametrize("rate", [24.0, 30.0])
 def test_a_film_takes_as_long_as_its_script(first, settling, rate):
     """The scene's time equals the time between frames, and each frame has its pose."""

@@ -20,7 +20,7 @@ from risorius.app.script.script_file import load_script, parse_script, save_scri
 from risorius.app.sound import player
 from risorius.app.sound.decoding import Sound, load_sound
 from risorius.app.sound.player import Player
-from risorius.app.viewer.session.physics import STEP, Clock
+from risorius.app.viewer.session.physics import STEP_TIME, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack
 
@@ -197,7 +197,7 @@ class HandDevice:
         return np.asarray(self._samples.send(count))
 
 
-COUNT = round(player.PERIOD * 48_000)
+COUNT = round(player.PERIOD_TIME * 48_000)
 
 
 @pytest.fixture
@@ -221,7 +221,7 @@ def test_a_player_gives_the_sound_from_the_place_on(device, speed):
     played.play(1.0, speed)
     first = device.ask(COUNT)
     assert first[0, 0] == 1000
-    assert abs(first[-1, 0] - (1000 + 1000 * speed * player.PERIOD)) <= 1
+    assert abs(first[-1, 0] - (1000 + 1000 * speed * player.PERIOD_TIME)) <= 1
     second = device.ask(COUNT)
     assert abs(int(second[0, 0]) - int(first[-1, 0])) <= 2
     played.play(0.5)
@@ -267,18 +267,18 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
     soundtrack.refresh()
     session.toggle_playing()
     soundtrack.elapsed(0.0)  # playback starts: the device fills its buffer
-    for _ in range(player.PERIODS):
+    for _ in range(player.PERIOD_COUNT):
         device.ask(COUNT)
-    due = player.PERIOD / pace
+    due = player.PERIOD_TIME / pace
     off = []
     for frame in range(1, round(60.0 * frames_per_second)):
         now = frame / frames_per_second
         while due <= now:
             device.now = due
             device.ask(COUNT)
-            due += player.PERIOD / pace
+            due += player.PERIOD_TIME / pace
         device.now = now
-        session.time += clock.steps(soundtrack.elapsed(1.0 / frames_per_second)) * STEP
+        session.time += clock.steps(soundtrack.elapsed(1.0 / frames_per_second)) * STEP_TIME
         assert played[0].position == approx(now * pace, abs=2e-3)
         off.append(now * pace - session.time)
     assert np.abs(off).max() < FRAME

@@ -148,7 +148,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
 @pytest.mark.slow
 def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
     """The face responds during an export; cancel leaves neither a file nor a part of one."""
-    monkeypatch.setattr(workers, "GRACE", LONG)
+    monkeypatch.setattr(workers, "GRACE_TIME", LONG)
     viewer.settings.export.kind = "mp4"
     open_script(viewer, SCRIPT.replace("0.5", "600.0"))
     press_keys(viewer, "F10")

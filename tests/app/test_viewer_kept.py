@@ -21,8 +21,8 @@ from risorius.app.scenes import PlaneScene
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture import portraits
-from risorius.app.viewer.session.physics import STEP
-from risorius.app.viewer.session.recovery import INTERVAL, Recovery
+from risorius.app.viewer.session.physics import STEP_TIME
+from risorius.app.viewer.session.recovery import WRITING_INTERVAL, Recovery
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings, load_settings, save_settings
 from risorius.app.viewer.window.splash_screen import SplashScreen
@@ -188,7 +188,7 @@ def recovery(session: Session, tmp_path: Path, clock: Clock) -> Iterator[Recover
 def watch(recovery, clock):
     """Advance time until a change is written."""
     recovery.watch()
-    clock.now += INTERVAL
+    clock.now += WRITING_INTERVAL
     recovery.watch()
 
 
@@ -216,10 +216,10 @@ def test_work_is_written_soon_and_removed_by_undo(session, recovery, clock, tmp_
     recovery.watch()
     assert recovery.due_in() == float("inf")
     assert not stored(tmp_path)
-    for step in range(round(1.5 * INTERVAL / STEP)):
+    for step in range(round(1.5 * WRITING_INTERVAL / STEP_TIME)):
         session.set("jaw_open", 0.2 + 0.001 * (step % 100))
         recovery.watch()
-        clock.now += STEP
+        clock.now += STEP_TIME
     recovery.close()
     (name,) = stored(tmp_path)
     assert 0.2 <= load_script(tmp_path / name).at(session.time)["jaw_open"] < 0.3

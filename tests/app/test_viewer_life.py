@@ -8,7 +8,7 @@ import pytest
 
 from risorius.app.script import Channel
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.picture.stage import COARSEST_IDLE_LEVEL, LEVELS
+from risorius.app.viewer.picture.stage import COARSEST_IDLE_LEVEL, DETAIL_LEVELS
 from risorius.app.viewer.session.physics import SLEEP_DELAY
 from risorius.app.viewer.window.schedule import Schedule
 
@@ -82,7 +82,7 @@ def test_slow_frames_lower_the_detail_of_idle_life(viewer, monkeypatch):
 
     It had all pixels, so that a face blinked at three frames a second beside other programs.
     """
-    coarse = LEVELS[COARSEST_IDLE_LEVEL]
+    coarse = DETAIL_LEVELS[COARSEST_IDLE_LEVEL]
     assert until(viewer, lambda: viewer.schedule.is_idling)
     with monkeypatch.context() as patch:
         patch.setattr(Schedule, "spent", 0.2)

@@ -14,7 +14,7 @@ from risorius.app.errors import UserError
 from risorius.app.script import Channel, Key, Pose, Script
 from risorius.app.script.recorder import Recorder
 from risorius.app.script.script_file import load_script
-from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.physics import STEP_TIME
 
 from .driving import run
 
@@ -97,7 +97,7 @@ def test_punching_in_changes_nothing_else(played, start, moves):
     shown = {}
     for move in moves:
         held |= move
-        time += STEP
+        time += STEP_TIME
         scripted = played.values(time, LIMITS)
         shown[time] = LIMITS.pose(held, scripted)
         recorder.add(time, shown[time])
@@ -124,8 +124,8 @@ def test_punching_in_changes_nothing_else(played, start, moves):
         for moment in np.linspace(0.0, 4.0, 121).tolist():
             before = played.at(moment).get(name, 0.0)
             after = script.at(moment).get(name, 0.0)
-            if moment < begin - 1.01 * STEP or (moment > end and end < 4.0 - 0.04):
-                if cut_by(played, name, (begin - STEP, end), moment):
+            if moment < begin - 1.01 * STEP_TIME or (moment > end and end < 4.0 - 0.04):
+                if cut_by(played, name, (begin - STEP_TIME, end), moment):
                     assert after == approx(before, abs=3e-3)
                 else:
                     assert after == before
@@ -175,7 +175,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
     run(session, 30)
     for step in range(60):
         session.set("jaw_open", step / 60.0)
-        session.advance(STEP)
+        session.advance(STEP_TIME)
     session.set(MAJOR, 0.8)
     run(session, 60)
     wanted = session.scene.positions.copy()
@@ -189,7 +189,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
     session.work.open(load_script(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
-        session.advance(STEP)
+        session.advance(STEP_TIME)
     assert np.abs(session.scene.positions - wanted).max() < 0.01
 
 
@@ -205,6 +205,6 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_pat
     session.toggle_recording()
     for step in range(30):
         session.live_override.override({"jaw_open": step / 30.0}, 1.0)
-        session.advance(STEP)
+        session.advance(STEP_TIME)
     session.toggle_recording()
     assert session.script.at(0.25)["jaw_open"] == approx(0.5, abs=0.05)

@@ -10,8 +10,8 @@ from risorius.app.script.keyframes import POSES, all_keys
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer.picture.stage import (
     CALM_FRAMES,
+    DETAIL_LEVELS,
     FULL_DETAIL,
-    LEVELS,
     PATIENCE_FRAMES,
     LevelOfDetail,
 )
@@ -148,7 +148,7 @@ def test_detail_falls_once_and_does_not_flicker():
     assert chosen.level == 0
     for _ in range(PATIENCE_FRAMES):
         chosen.note(0.3)
-    assert chosen.detail == LEVELS[-1]
+    assert chosen.detail == DETAIL_LEVELS[-1]
 
 
 @pytest.mark.parametrize(

@@ -78,9 +78,9 @@ def test_a_tracker_s_mesh_gives_all_68_points():
     points = landmarks.points_of_mesh(mesh)
     assert points.shape == (68, 2)
     assert np.isfinite(points).all()
-    left = {number for number in range(68) if number not in landmarks.RIGHT}
+    left = {number for number in range(68) if number not in landmarks.RIGHT_LANDMARKS}
     assert {int(MIRRORED[number]) for number in left if MIRRORED[number] != number} == (
-        landmarks.RIGHT
+        landmarks.RIGHT_LANDMARKS
     )
 
 

@@ -28,7 +28,7 @@ def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
     Cubic edges are nearer to the surface than the mesh, and Loop's surface is farther away.
     """
     for case in surfaces.values():
-        rows = rows_of(case, rivals.OURS)
+        rows = rows_of(case, rivals.OWN_METHODS)
         most = rivals.TRIANGLE_RATIO * len(case.faces)
         assert all(row.triangles <= most for row in rows.values())
         before = rows["risorius, not refined"].distance
@@ -43,7 +43,7 @@ def test_a_library_that_is_missing_is_one_line(monkeypatch):
     missing = Method("nobody, smooth", "nobody", "nobody_has_this", None, has_limit=False)
     monkeypatch.setattr(rivals, "METHODS", [missing, missing])
     methods, skipped = rivals.available()
-    assert methods == list(rivals.OURS)
+    assert methods == list(rivals.OWN_METHODS)
     cure = "install it in the checkout: pip install '.[rivals]'"
     assert skipped == [f"skipped: nobody needs nobody; {cure}"]
 
@@ -55,7 +55,7 @@ def test_a_mesh_that_is_refused_is_one_line(surfaces):
         raise ValueError("not manifold")
 
     method = Method("strict", "risorius", "risorius.refine", refuse, has_limit=False)
-    rows, skipped = rivals.measure(surfaces["sphere"], [rivals.OURS[0], method], 0.01)
+    rows, skipped = rivals.measure(surfaces["sphere"], [rivals.OWN_METHODS[0], method], 0.01)
     assert [row.method for row in rows] == ["risorius, not refined"]
     assert skipped == ["skipped: strict of the sphere: not manifold"]
 
@@ -77,7 +77,7 @@ def test_loop_is_the_same_surface_in_libigl(surfaces):
     pytest.importorskip("igl", reason="needs the extra 'rivals'")
     case = surfaces["sphere"]
     (libigl,) = (method for method in METHODS if method.package == "libigl")
-    ours = rivals.OURS[-1].bind(case.faces, case.rest)(case.positions, 0.0)
+    ours = rivals.OWN_METHODS[-1].bind(case.faces, case.rest)(case.positions, 0.0)
     theirs = libigl.bind(case.faces, case.rest)(case.positions, 0.0)
     found = np.unique(np.round(ours[0], 5), axis=0)
     assert np.abs(found - np.unique(np.round(theirs[0], 5), axis=0)).max() < 1e-4

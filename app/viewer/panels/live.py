@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from ...control_names import sentence
 from ...live.live_face import LiveFace, State
-from ...live.protocols import ANYWHERE, LOOPBACK, PROTOCOLS
+from ...live.protocols import ANY_ADDRESS, LOOPBACK, PROTOCOLS
 from ...recordings.calibration import HIGHEST_GAIN
 from ...recordings.names import ANGLES
 from ..context import ApplicationContext
@@ -18,7 +18,7 @@ from ..interface.gui import colour
 from ..interface.widgets import LabelledRows, hint, muted
 
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
-COMPUTERS = {"this computer only": LOOPBACK, "the whole network": ANYWHERE}
+COMPUTERS = {"this computer only": LOOPBACK, "the whole network": ANY_ADDRESS}
 HINTS = {
     "Protocol": "of the sender; Live Link Face is an app of an iPhone, "
     "VMC is sent by most programs for avatars",
@@ -142,6 +142,6 @@ def advice_in_words(face: LiveFace, own_address: str) -> str:
     if face.listening.address == LOOPBACK:
         trial = "; without one, type: risorius send" * (face.listening.kind == "livelink")
         return f"for a phone, listen to the whole network{trial}"
-    if face.listening.address == ANYWHERE and own_address:
+    if face.listening.address == ANY_ADDRESS and own_address:
         return f"in the app, let it send to {own_address}, port {face.port}"
     return f"in the app, let it send to port {face.port} of this computer"

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
-from ...anatomy import OPACITY, SIDES, STRUCTURES
+from ...anatomy import OPACITY, SIDE_SIGNS, STRUCTURES
 from ...control_names import readable
 from ...errors import UserError
 from ...refining.presets import PRESETS, STATIC, STATIC_LABEL, THRESHOLDS, words_of_presets
@@ -216,7 +216,7 @@ class MechanismPanel:
             label = "Skin opacity"
             name = "skin_opacity"
             display.skin_opacity = self._rows.slider_row(label, name, now, (0.0, 1.0), OPACITY)
-            self._rows.pick("Dissect", tuple(SIDES))
+            self._rows.pick("Dissect", tuple(SIDE_SIGNS))
 
     def _draw_times(self) -> None:
         """Draw the median times of each phase of the paper's Figure 1, and of whole frames."""

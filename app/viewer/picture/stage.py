@@ -276,7 +276,7 @@ def style_of(
 # After full detail: one sample with smoothed edges (edges.glsl), then smaller, blurred pictures.
 # Two samples would not be faster, because software OpenGL then draws four. With four samples at
 # scale 0.75, a frame takes 0.8 of the first level's time.
-LEVELS = (
+DETAIL_LEVELS = (
     FULL_DETAIL,
     render.Detail(samples=0, scale=1.0),
     render.Detail(samples=0, scale=0.75),
@@ -284,7 +284,7 @@ LEVELS = (
     render.Detail(samples=0, scale=0.5),
 )
 # Processor time of a whole frame at 1280 x 720, relative to the first level (measured 2026-11-29).
-COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
+LEVEL_COSTS = 1.0, 0.8, 0.7, 0.61, 0.54
 COARSEST_IDLE_LEVEL = 2  # chosen by eye: with fewer pixels, outlines of a face at rest have steps
 PATIENCE_FRAMES = 4  # slow frames in a row that reduce the detail
 CALM_FRAMES = 40  # fast frames in a row after which a moving picture becomes finer
@@ -303,12 +303,12 @@ class LevelOfDetail:
     @property
     def detail(self) -> render.Detail:
         """The detail for a scene that moves."""
-        return LEVELS[self.level]
+        return DETAIL_LEVELS[self.level]
 
     @property
     def unhurried(self) -> render.Detail:
         """The detail for idle life, whose slow motion makes missing pixels more visible."""
-        return LEVELS[min(self.level, COARSEST_IDLE_LEVEL)]
+        return DETAIL_LEVELS[min(self.level, COARSEST_IDLE_LEVEL)]
 
     def begin_motion(self) -> None:
         """Note that a motion begins, when nobody notices a rise of the detail."""
@@ -323,10 +323,10 @@ class LevelOfDetail:
         self._slow = [*self._slow, seconds] if seconds > slow_seconds else []
         self._fast = self._fast + 1 if seconds < ample_seconds else 0
         if len(self._slow) >= PATIENCE_FRAMES:
-            allowed = COSTS[self.level] * slow_seconds / min(self._slow)
-            coarser = range(self.level + 1, len(LEVELS))
-            fitting = (each for each in coarser if COSTS[each] <= allowed)
-            self.level = next(fitting, len(LEVELS) - 1)
+            allowed = LEVEL_COSTS[self.level] * slow_seconds / min(self._slow)
+            coarser = range(self.level + 1, len(DETAIL_LEVELS))
+            fitting = (each for each in coarser if LEVEL_COSTS[each] <= allowed)
+            self.level = next(fitting, len(DETAIL_LEVELS) - 1)
             self._forget()
         elif self._fast >= CALM_FRAMES:
             self._rise()

@@ -24,7 +24,7 @@ from ...motion import opening_of_jaw
 from ...motion.life import Idle, Values
 from .session import Session
 
-STEP = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
+STEP_TIME = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
 MOST_STEPS = 6  # in one frame: after a stall, the window catches up a tenth of a second
 # A step may be taken early by this share of its length: frames of a 60 Hz screen that are slightly
 # late or early then get one step each, so motion does not stutter.
@@ -96,11 +96,11 @@ class Clock:
         early: fraction of its length by which a step may be taken early.
         """
         self._owed += max(elapsed, 0.0)
-        due = max(int(self._owed / STEP + early), 0)
+        due = max(int(self._owed / STEP_TIME + early), 0)
         if due > MOST_STEPS:
             self._owed = 0.0
             return MOST_STEPS
-        self._owed -= due * STEP
+        self._owed -= due * STEP_TIME
         return due
 
 
@@ -156,7 +156,7 @@ class Physics:
         wanted = session.current
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
-        self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
+        self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP_TIME
         if is_driven:  # even in a frame without a step, because the window must stay awake
             self._still_for = 0.0
         self.has_moved = False
@@ -172,7 +172,7 @@ class Physics:
             self._still_at = scene.positions.copy()
             self._still_for = 0.0
         else:
-            self._still_for += steps * STEP
+            self._still_for += steps * STEP_TIME
         self.has_moved = not self.is_idling or self._is_to_be_seen()
         if self.has_moved:
             self._seen = scene.positions.copy()
@@ -186,7 +186,7 @@ class Physics:
             self._times.steps[-1] += steps
             try:
                 for _ in range(steps):
-                    session.advance(STEP, life(STEP) if life is not None else {})
+                    session.advance(STEP_TIME, life(STEP_TIME) if life is not None else {})
             except sim.SimulationUnstable as error:
                 session.neutral()
                 scene.reset()

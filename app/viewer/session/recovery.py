@@ -23,7 +23,7 @@ from ...staging import locked
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
-INTERVAL = 2.0  # [s] from a change to its writing, to include further changes
+WRITING_INTERVAL = 2.0  # [s] from a change to its writing, to include further changes
 
 
 class Recovery:
@@ -70,7 +70,7 @@ class Recovery:
             if self.due_in() <= 0.0:
                 self.save()
         elif _state(self._session) != self._safe:
-            self._due = self._clock() + max(INTERVAL, pause_factor * self._writing_took)
+            self._due = self._clock() + max(WRITING_INTERVAL, pause_factor * self._writing_took)
 
     def due_in(self) -> float:
         """Time until the file must be written [s]; infinite without a change."""

@@ -11,7 +11,7 @@ from pathlib import Path
 from ...control_names import copied, mirrored, readable, twin_of
 from ...control_names.limits import ControlValues
 from ...errors import UserError
-from ...motion import SETTLING
+from ...motion import SETTLING_TIME
 from ...performances import new_script
 from ...scenes import Scene
 from ...script import Script, keyframes, rounded
@@ -179,7 +179,7 @@ class Session:
         self.scene.reset()
         self.scene.set_controls(self.current)
         if any(self.current.numbers):
-            self.scene.step(SETTLING)  # as in a film
+            self.scene.step(SETTLING_TIME)  # as in a film
 
     def seek(self, time: float) -> Message:
         """Show the script's pose at a time; the message names the controls that this resets."""

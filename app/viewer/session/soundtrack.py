@@ -12,10 +12,10 @@ from pathlib import Path
 from ...errors import UserError
 from ...sound.decoding import Sound, load_sound
 from ...sound.player import NoDeviceError, Player
-from .physics import MOST_STEPS, STEP
+from .physics import MOST_STEPS, STEP_TIME
 from .session import Session
 
-LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script in one frame; more is a jump
+LONGEST_FRAME = (MOST_STEPS + 1) * STEP_TIME  # [s] of the script in one frame; more is a jump
 
 
 class Soundtrack:

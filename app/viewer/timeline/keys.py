@@ -134,7 +134,7 @@ class KeySelection:
     def keys_of(self, names: Iterable[str]) -> KeySet:
         """Return the keys at the current time in the tracks of these controls."""
         session = self._session
-        reach = 0.5 * keyframes.FRAME
+        reach = 0.5 * keyframes.FRAME_TIME
         there = keyframes.all_keys(session.script).nearest(session.time, reach).times
         return KeySet({name: there[name] for name in names if name in there})
 
@@ -176,7 +176,7 @@ class KeySelection:
     def nudge(self, frames: int) -> None:
         """Move the selected keys by this many frames."""
         first = self.keys.first
-        offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
+        offset = keyframes.on_frame(first + frames * keyframes.FRAME_TIME) - first
         script, moved_keys = keyframes.moved(self._session.script, self.keys, offset)
         self._session.edit(script)
         self.keys = moved_keys

@@ -6,9 +6,10 @@ from typing import TypeVar
 
 from risorius.geometry.arrays import Floats64
 
-from ...script.keyframes import FRAME
+from ...script.keyframes import FRAME_TIME
 
-TICK_STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
+SHORT_STEPS = (FRAME_TIME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)  # [s] between ticks
+TICK_STEPS = (*SHORT_STEPS, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats64)
 
@@ -16,7 +17,7 @@ Number = TypeVar("Number", float, Floats64)
 class TimeAxis:
     """The visible part: `span` seconds of the script from `start` on; by default all."""
 
-    LEAST_SPAN = 8.0 * FRAME  # [s] at the closest zoom
+    LEAST_SPAN = 8.0 * FRAME_TIME  # [s] at the closest zoom
 
     def __init__(self) -> None:
         self.start = 0.0
