@@ -105,6 +105,6 @@ class Anatomy:
         grip = self._model.grip(self._drive.activation(), bones.jaw, bones.lips_closed)
         return {
             "lips": skin.lips.deepest(x, skin.rest, grip.overlap),
-            "lids": skin.eyes.deepest(x),
+            "lids": skin.eyes.deepest(x, bones.looks()),
             "teeth": skin.teeth.deepest(x, bones.mandible),
         }

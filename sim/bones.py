@@ -62,6 +62,15 @@ class Bones:
         """The direction of each eyeball: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
         return self._controls.reached[self._gaze].reshape(-1, 2)
 
+    def looks(self) -> Floats64:
+        """The unit vector along which each eyeball looks, in the standard space, (eyes, 3)."""
+        skull = self._skull
+        most = np.radians(skull.eyes.gaze_deg)
+        factors = np.array([ball.gaze_factor for ball in skull.eyeballs])
+        left, up = most * factors * self.gaze().T
+        across = np.cos(up)
+        return np.stack([np.sin(left) * across, np.sin(up), np.cos(left) * across], axis=1)
+
     def transforms(self) -> dict[str, Floats64]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         transforms = {

@@ -1,13 +1,13 @@
-"""Contact of skin with the eyeballs and the other lip, and the seal that keeps closed lips closed.
+"""Contact of each lip with the other lip, and the seal that keeps closed lips closed.
 
 Each vertex on the edge of either lip is paired with a point on the edge of the other lip. Points
 are used because a mesh may have more vertices on one lip; a vertex without a pair would make the
 lip line jagged. A spring holds each pair together as long as nothing opens the mouth (moist lips
 stick; without the spring a smile parts them by a millimetre). The spring must be stiffer than any
 muscle, or teeth show through closed lips. So it is integrated implicitly, pair by pair, and does
-not shorten the time step. Pairs and eyeballs are also hard constraints: after each substep,
-positions are projected out of the other lip and the eyeball, and the approaching part of the
-velocity is removed.
+not shorten the time step. Pairs are also hard constraints: after each substep, positions are
+projected out of the other lip, and the approaching part of the velocity is removed.
+eye_contact.py has the contact with the eyeballs.
 
 Source: own; contact by projection after Müller et al. 2007, "Position based dynamics", section 3.
 Differs from it: all pairs are solved at once from one state and averaged (Jacobi), which keeps a
@@ -23,13 +23,11 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from .landmarks import mouth_line
 from .polylines import polyline_distance
-from .skull import Eyeball
 from .surface import SkinSurface
 
 PAIR_GAP = 2.2  # mm: lips further apart at rest form no pair, or their red would fold at the line
 PRESSED_OVERLAP = 1.8  # mm of overlap of sealed lips when muscles act: smoothing thins a folded lip
 SLIDE_DISTANCE = 3.0  # mm that the lower lip moves forward or in before it passes the upper one
-EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
 
 
 class LipPairs(NamedTuple):
@@ -183,36 +181,3 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     lips = LipPairs(vertex, beside, weight, below, weight, strength, 1.0 / most, members)
     gap = -below * lips.separations(surface.positions)[:, 1]
     return lips._replace(least_gap=np.minimum(gap, 0.0))
-
-
-class EyeContact(NamedTuple):
-    """Skin vertices near an eyeball, and the least distance of each from its centre."""
-
-    vertex: Integers32  # (C,)
-    centre: Floats64  # (C, 3)
-    least_distance: Floats64  # (C,)
-
-    def deepest(self, x: Floats64) -> float:
-        """Greatest depth of skin at positions (V, 3) inside an eyeball [mm]."""
-        distance = np.linalg.norm(x[self.vertex] - self.centre, axis=1)
-        return float((self.least_distance - distance).max(initial=0.0))
-
-
-def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
-    """Find the vertices that could touch an eyeball; vertices inside it may not sink deeper."""
-    vertices = []
-    centres = []
-    least = []
-    eye_reach = 12.0  # mm around an eyeball in which skin is watched
-    for ball in eyeballs:
-        distance = np.linalg.norm(surface.positions - ball.centre, axis=1)
-        near = np.flatnonzero(distance < ball.radius + eye_reach)
-        vertices.append(near)
-        centres.append(np.tile(ball.centre, (len(near), 1)))
-        least.append(np.minimum(distance[near], ball.radius + EYE_CLEARANCE))
-    empty = np.zeros((0, 3))
-    return EyeContact(
-        np.concatenate([*vertices, np.zeros(0)]).astype(np.int32),
-        np.vstack([*centres, empty]),
-        np.concatenate([*least, np.zeros(0)]),
-    )

@@ -6,7 +6,7 @@
     muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
                       |
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, substep.py
-    lips and eyeballs keep skin out                                      contact.py, substep.py
+    lips and eyeballs keep skin out                                      contact.py, eye_contact.py
 
 A face is built once from a mesh (face_model.py), then `step` moves it. The simulation runs in the
 standard face space, fixed to the cranium. Only displacements are mapped back to head coordinates,
@@ -131,7 +131,11 @@ class Simulation:
             self.controls.advance(tick / 2.0)
             if not self._are_targets_there():
                 self.place_targets()
-            advance(state, model.skin, Tick(count, tick / count, self.grip, bones.mandible))
+            advance(
+                state,
+                model.skin,
+                Tick(count, tick / count, self.grip, bones.mandible, self._looks),
+            )
             self.controls.advance(tick / 2.0)
         broken = to_posed_head(
             state.x, model.surface.positions, self._axes, self.rest_positions, bones.turn,
@@ -156,6 +160,7 @@ class Simulation:
         state = self._state
         muscles = self._model.muscles
         bones.follow()
+        self._looks = bones.looks()
         rest = model.surface.positions
         normals = model.surface.normals
         carry(state, rest, normals, bones.weight, bones.mandible)

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
-from .contact import PAIR_GAP, Grip, pair_lips, watch_eyeballs
+from .contact import PAIR_GAP, Grip, pair_lips
+from .eye_contact import watch_eyeballs
 from .foundation import Foundation, foundation_of
 from .landmarks import (
     INNER_CORNERS,

@@ -223,7 +223,10 @@ def _eyeballs(given: Any, space: FaceSpace) -> tuple[Eyeball, ...]:
         radius = checked.number("head.eyes: radius", eye.radius)
         if radius <= 0.0:
             raise ValueError(f"head.eyes: radius was {radius:g}, must be above 0")
-        balls.append(Eyeball(Side(eye.name), centre, radius / space.scale))
+        iris = getattr(eye, "iris_radius", None)
+        if iris is not None:
+            iris = checked.number("head.eyes: iris_radius", iris) / space.scale
+        balls.append(Eyeball(Side(eye.name), centre, radius / space.scale, iris))
     return tuple(balls)
 
 

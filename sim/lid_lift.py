@@ -1,8 +1,8 @@
 """How near a closed lid lies to the eyeball, and how far it is lifted to cover the ball.
 
-Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But the
-triangle between three vertices is flat, and the cornea protrudes from the ball, so triangles of a
-coarse mesh would intersect the ball. So the lids are closed once when a face is built. If a
+Lids turn over the eyeball vertex by vertex and are kept off the ball there (eye_contact.py). But
+the triangle between three vertices is flat, and the cornea protrudes from the ball, so triangles of
+a coarse mesh would intersect the ball. So the lids are closed once when a face is built. If a
 triangle then intersects the eyeball, its corners on the upper lid move outward, each by its
 barycentric weight at the deepest point. The lower lid hardly moves when the eye closes, and keeps
 its form.
@@ -17,9 +17,9 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32
 from ..geometry.directions import unit_vectors
 from ..geometry.normals import cross_products
-from .contact import EYE_CLEARANCE
+from .eye_contact import EYE_CLEARANCE, barycentric_grid
 from .landmarks import smoothstep
-from .skull import Eyeball
+from .skull import Eyeball, ball_surface
 
 LIFT_TOLERANCE = 1e-3  # mm
 
@@ -55,7 +55,7 @@ def lift_off(
     faces = faces[moves[faces].any(axis=1)]
     outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
     faces = faces[outward > 0.0]  # not the inner side of a lid
-    barycentric = _barycentric_grid()
+    barycentric = barycentric_grid()
     lift = np.zeros(len(x))
     before = np.linalg.norm(barycentric @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
@@ -64,7 +64,9 @@ def lift_off(
     most_passes = 30  # most repetitions, needed because triangles share corners
     for _ in range(most_passes):
         points = barycentric @ (away + lift[:, None] * directions)[faces]  # (F, S, 3)
-        deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
+        distance = np.linalg.norm(points, axis=2)
+        ahead = points[..., 2] / np.maximum(distance, LIFT_TOLERANCE)  # the eye looks straight on
+        deep = ball_surface(ahead, ball.radius, ball.iris) + kept - distance
         weights = barycentric[deep.argmax(axis=1)] * moves[faces]
         push = deep.max(axis=1, initial=0.0) / np.maximum((weights**2).sum(axis=1), LIFT_TOLERANCE)
         if push.max(initial=0.0) < LIFT_TOLERANCE:
@@ -73,25 +75,3 @@ def lift_off(
         np.maximum.at(further, faces, weights * push[:, None])
         lift += further
     return lift
-
-
-def _barycentric_grid() -> Floats64:
-    """Return the barycentric coordinates of points all over a triangle, shape (S, 3)."""
-    edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
-    n = edge_steps
-    steps = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
-    return np.array(steps, np.float64) / n
-
-
-def _reach(points: Floats64, radius: float) -> Floats64:
-    """Distance of an eyeball's surface from its centre in the directions of `points` (..., 3).
-
-    The eye looks straight ahead.
-    """
-    ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), LIFT_TOLERANCE)
-    cornea_width = 0.49  # radii of the ball: half its width
-    beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / cornea_width
-    cornea_rise = 0.085  # radii of the ball: its height above it
-    rise = cornea_rise * np.maximum(1.0 - beside**2, 0.0) ** 1.5
-    reach: Floats64 = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))
-    return reach

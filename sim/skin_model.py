@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..geometry.arrays import Floats64
-from .contact import EyeContact, Grip, LipPairs
+from .contact import Grip, LipPairs
+from .eye_contact import EyeContact
 from .skull import RigidMotion
 from .teeth import Teeth
 from .tissue import EdgeSprings, TissueSprings
@@ -33,3 +34,4 @@ class Tick(NamedTuple):
     h: float  # s, length of each
     grip: Grip  # how firmly the lips hold each other
     mandible: RigidMotion
+    looks: Floats64  # (eyes, 3) unit, along which each eyeball looks

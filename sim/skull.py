@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -33,6 +33,7 @@ LATERAL_AXIS = (1.0, 0.0, 0.0)
 UP_AXIS = (0.0, 1.0, 0.0)
 
 Triple = tuple[float, float, float]
+Numbers = TypeVar("Numbers", float, Floats64)
 
 
 class RigidMotion(NamedTuple):
@@ -77,6 +78,13 @@ class Eyeball:
     side: Side
     centre: Floats64  # (3,)
     radius: float
+    iris_radius: float | None = None  # of a human ball of this size if None
+
+    @property
+    def iris(self) -> float:
+        """Radius of the iris [mm], to which the cornea before it is proportional."""
+        iris_share = 0.454  # of the ball's radius, on the built-in head
+        return iris_share * self.radius if self.iris_radius is None else self.iris_radius
 
     @property
     def gaze_factor(self) -> float:
@@ -231,6 +239,20 @@ def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -
         for k in range(3):
             matrix[i, k] = there[i, k]
     return matrix
+
+
+@njit
+def ball_surface(ahead: Numbers, radius: float, iris: float) -> Numbers:
+    """Distance of an eyeball's surface from its centre [mm]: a sphere with a cornea.
+
+    ahead: cosine of the angle between the direction there and the gaze, a number or an array.
+    radius, iris: radii of the ball and of its iris [mm].
+    """
+    cornea_width = 1.08 * iris / radius  # sine of the angle from the gaze to the cornea's edge
+    cornea_rise = 0.187 * iris  # mm above the sphere, measured on the drawn ball like the width
+    inside = np.maximum(1.0 - (1.0 - ahead**2) / cornea_width**2, 0.0)
+    surface: Numbers = radius + cornea_rise * inside**1.5 * (ahead > 0.0)
+    return surface
 
 
 def eyeballs_from_landmarks(landmarks: Floats64) -> tuple[Eyeball, ...]:

@@ -2,7 +2,7 @@
 
 tissue.py, contact.py and teeth.py explain the physics. The arguments are the named tuples of
 state.py and skin_model.py. All kernels are in this file, so that a substep can be read from top to
-bottom.
+bottom, except the contact with the eyeballs (eye_contact.py).
 
 A frame is cut into ticks, a tick into substeps:
 
@@ -26,9 +26,9 @@ import math
 
 import numpy as np
 
-from ..geometry.arrays import Floats64
 from ..jit import njit
-from .contact import SLIDE_DISTANCE, EyeContact
+from .contact import SLIDE_DISTANCE
+from .eye_contact import keep_out_of_eyeballs, lift_triangles, stop_approach
 from .skin_model import SkinModel, Tick
 from .skull import RigidMotion
 from .state import State
@@ -71,8 +71,9 @@ def advance(state: State, skin: SkinModel, tick: Tick) -> None:
         move(state, tick.h)
         for _ in range(lip_passes):
             keep_lips_apart(state, skin, tick.grip.overlap)
-        keep_out_of_eyeballs(state, skin.eyes)
+        keep_out_of_eyeballs(state, skin.eyes, tick.looks)
         keep_out_of_teeth(state, skin.teeth, tick.mandible)
+    lift_triangles(state, skin.eyes, tick.looks)
 
 
 @njit
@@ -347,38 +348,3 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
         x[i, 1] += dy
         x[i, 2] += dz
         stop_approach(v, i, (dx, dy, dz))
-
-
-@njit
-def keep_out_of_eyeballs(state: State, eyes: EyeContact) -> None:
-    """Move skin out of the eyeballs, and stop its approach."""
-    x = state.x
-    v = state.v
-    vertex = eyes.vertex
-    centre = eyes.centre
-    least_distance = eyes.least_distance
-    for c in range(len(vertex)):
-        i = vertex[c]
-        dx = x[i, 0] - centre[c, 0]
-        dy = x[i, 1] - centre[c, 1]
-        dz = x[i, 2] - centre[c, 2]
-        squared = dx * dx + dy * dy + dz * dz
-        if squared >= least_distance[c] ** 2 or squared == 0.0:
-            continue
-        out = least_distance[c] / np.sqrt(squared)
-        x[i, 0] = centre[c, 0] + dx * out
-        x[i, 1] = centre[c, 1] + dy * out
-        x[i, 2] = centre[c, 2] + dz * out
-        stop_approach(v, i, (dx, dy, dz))
-
-
-@njit
-def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
-    """Remove the component of a vertex's velocity that points against `out`, the way out."""
-    dx, dy, dz = out
-    squared = dx * dx + dy * dy + dz * dz
-    approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
-    if approach < 0.0:
-        v[i, 0] -= approach * dx
-        v[i, 1] -= approach * dy
-        v[i, 2] -= approach * dz

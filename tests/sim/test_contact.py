@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from risorius.sim.contact import pair_lips, watch_eyeballs
+from risorius.sim.contact import pair_lips
+from risorius.sim.eye_contact import keep_out_of_eyeballs, lift_triangles, watch_eyeballs
+from risorius.sim.landmarks import Side
+from risorius.sim.skull import Eyeball, ball_surface
+from risorius.sim.state import State
+from risorius.sim.surface import build_surface
+
+AHEAD = (0.0, 0.0, 1.0)
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick():
@@ -14,14 +21,51 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
 
     Skin that starts nearer may stay there, and distant skin is not checked.
     """
-    ball = SimpleNamespace(centre=np.array([30.0, 0.0, 0.0]), radius=12.0)
+    ball = Eyeball(Side.LEFT, np.array([30.0, 0.0, 0.0]), 12.0)
     away = np.array([10.0, 12.1, 13.0, 20.0, 30.0])
-    skin = SimpleNamespace(positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8])
+    skin = SimpleNamespace(
+        positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8], faces=np.zeros((0, 3), np.int32)
+    )
     eyes = watch_eyeballs(skin, (ball,))
     assert eyes.vertex.tolist() == [0, 1, 2, 3]
-    assert eyes.least_distance == approx([10.0, 12.1, 12.3, 12.3])
+    assert eyes.least == approx([10.0, 12.1, 12.3, 12.3])
     sunk = ball.centre + np.array([10.0, 12.1, 11.8, 12.3, 1.0])[:, None] * [0.0, 0.6, 0.8]
-    assert eyes.deepest(sunk) == approx(0.5)
+    assert eyes.deepest(sunk, np.array([AHEAD])) == approx(0.5)
+
+
+def flat_lid(size):
+    """A triangle below the pupil of an eye at rest, in front of the ball, and its eye contact."""
+    corners = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]]) * size
+    ball = Eyeball(Side.LEFT, np.array([30.0, 0.0, 0.0]), 12.0)
+    surface = build_surface(
+        ball.centre + corners + [0.0, -8.0, 12.0], np.array([[0, 1, 2]], np.int32)
+    )
+    return ball, surface, watch_eyeballs(surface, (ball,))
+
+
+@pytest.mark.parametrize("look", [AHEAD, (0.0, -0.6, 0.8)], ids=["ahead", "down"])
+@pytest.mark.parametrize("size", [1.0, 5.0], ids=["fine", "coarse"])
+def test_a_cornea_does_not_pierce_a_lid(look, size):
+    """No point of a lid's triangle is nearer to ball and cornea than a lid is thick.
+
+    The cornea turns with the gaze, and a long triangle is flat between vertices that are outside.
+    """
+    ball, surface, eyes = flat_lid(size)
+    assert len(eyes.faces) == (size > 2.0)
+    state = State.at_rest(surface)
+    looks = np.array([look])
+    flat = surface.positions - surface.positions.mean(axis=0)
+    state.x[:] = ball.centre + 12.4 * looks[0] + flat
+    state.v[:] = -100.0 * looks[0]
+    for _ in range(20):
+        keep_out_of_eyeballs(state, eyes, looks)
+        lift_triangles(state, eyes, looks)
+    points = np.random.default_rng(2).dirichlet([1.0, 1.0, 1.0], 5000) @ state.x - ball.centre
+    distance = np.linalg.norm(points, axis=1)
+    cornea = ball_surface(points @ looks[0] / distance, ball.radius, ball.iris)
+    assert 0.1 < (distance - cornea).min() < 0.5
+    assert distance.min() > 12.6
+    assert ((state.x - ball.centre) * state.v).sum(axis=1).min() > -1e-9
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ import pytest
 from numpy.linalg import norm
 
 from risorius import sim
-from risorius.sim.contact import Grip, watch_eyeballs
+from risorius.sim.contact import Grip
+from risorius.sim.eye_contact import watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLE_COUNT, contract
 from risorius.sim.landmarks import smoothstep
 from risorius.sim.lid_motion import turn_lids
@@ -81,7 +82,7 @@ def test_seal_is_an_implicit_spring(stirred, model, state, generator):
             x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
         )
         before = mine.v.copy()
-        hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST_MOTION))
+        hold_lips(mine, skin._replace(lips=alone), Tick(1, h, grip, REST_MOTION, np.zeros((2, 3))))
         i = lips.vertex[pair]
         (a, b) = lips.beside[pair]
         w = lips.weight[pair]

@@ -1,0 +1,272 @@
+"""Contact of skin with the eyeballs and their corneas: what may touch, and how it is kept out.
+
+After each substep vertices are projected out of ball and cornea. Triangles of a coarse lid are flat
+between their vertices, and a turned cornea would pierce them. So long triangles are tested at
+points all over them after each tick, which is enough, because nobody sees the skin in between.
+
+Source: own; projection by weights as in Müller et al. 2007, "Position based dynamics", section 3.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.arrays import Floats64, Integers32, Integers64
+from ..geometry.normals import cross_products
+from ..jit import njit
+from .skull import Eyeball, Triple, ball_surface
+from .state import State
+from .surface import SkinSurface
+
+EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
+
+
+class EyeContact(NamedTuple):
+    """Skin near an eyeball: vertices, and long triangles, which may cut the ball between vertices.
+
+    Skin that is nearer to a ball at rest than a lid is thick may stay as deep.
+    """
+
+    vertex: Integers32  # (C,)
+    eye: Integers32  # (C,)
+    least: Floats64  # (C,) mm, least distance from the centre beside the cornea
+    sunk: Floats64  # (C,) mm, depth at rest
+    faces: Integers32  # (T, 3) long triangles that face away from a ball
+    corners: Integers32  # (n,) their vertices
+    corner_eye: Integers32  # (n,)
+    face_eye: Integers32  # (T,)
+    face_reach: Floats64  # (T,) mm, least distance of the corners at which no point is too near
+    shares: Floats64  # (S, 3) barycentric coordinates of the points that are tested
+    face_least: Floats64  # (T, S) mm
+    face_sunk: Floats64  # (T, S) mm
+    centres: Floats64  # (eyes, 3)
+    radii: Floats64  # (eyes,)
+    irises: Floats64  # (eyes,) mm, radii of the irises
+    tops: Floats64  # (eyes,) mm, distance that skin keeps from the centre before the pupil
+
+    def deepest(self, x: Floats64, looks: Floats64) -> float:
+        """Greatest depth of vertices (V, 3) inside an eyeball [mm]; looks: see `Bones.looks`."""
+        away = x[self.vertex] - self.centres[self.eye]
+        distance = np.linalg.norm(away, axis=1)
+        ahead = (away * looks[self.eye]).sum(axis=1) / np.maximum(distance, 1e-9)
+        least = self.least.copy()
+        for eye, (radius, iris) in enumerate(zip(self.radii, self.irises, strict=True)):
+            own = self.eye == eye
+            surface = ball_surface(ahead[own], radius, iris)
+            least[own] = np.maximum(least[own], surface + EYE_CLEARANCE - self.sunk[own])
+        return float((least - distance).max(initial=0.0))
+
+
+def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
+    """Find the skin that could touch an eyeball; skin inside it may not sink deeper."""
+    x = surface.positions
+    shares = barycentric_grid()
+    rows = []
+    tops = []
+    for number, ball in enumerate(eyeballs):
+        vertex = _near(x, ball)
+        least, sunk = _kept_out(x[vertex], ball)
+        faces, longest = _long_faces(surface, vertex, ball)
+        top = ball_surface(1.0, ball.radius, ball.iris) + EYE_CLEARANCE
+        # No point of a triangle is farther than this from its nearest corner.
+        stretched = 1.3  # times its length at rest that an edge grows at most
+        face_reach = np.sqrt(top**2 + (stretched * longest) ** 2 / 3.0)
+        face_least, face_sunk = _kept_out(shares @ x[faces], ball)
+        of_eye = (np.full(len(each), number, np.int32) for each in (vertex, faces))
+        rows.append((vertex, faces, least, sunk, face_reach, face_least, face_sunk, *of_eye))
+        tops.append(top)
+    none = np.zeros(0)
+    no_points = np.zeros((0, len(shares)))
+    rows.append((none, np.zeros((0, 3)), none, none, none, no_points, no_points, none, none))
+    vertex, faces, least, sunk, face_reach, face_least, face_sunk, eye, face_eye = (
+        np.concatenate(column) for column in zip(*rows, strict=True)
+    )
+    corners, first = np.unique(faces, return_index=True)
+    return EyeContact(
+        vertex=vertex.astype(np.int32),
+        eye=eye.astype(np.int32),
+        least=least,
+        sunk=sunk,
+        faces=faces.astype(np.int32),
+        corners=corners.astype(np.int32),
+        corner_eye=np.repeat(face_eye, 3)[first].astype(np.int32),
+        face_eye=face_eye.astype(np.int32),
+        face_reach=face_reach,
+        shares=shares,
+        face_least=face_least,
+        face_sunk=face_sunk,
+        centres=np.array([ball.centre for ball in eyeballs]).reshape(-1, 3),
+        radii=np.array([ball.radius for ball in eyeballs]),
+        irises=np.array([ball.iris for ball in eyeballs]),
+        tops=np.array(tops),
+    )
+
+
+def _near(x: Floats64, ball: Eyeball) -> Integers64:
+    """Vertices (n,) of `x` (V, 3) that could touch a ball."""
+    eye_reach = 12.0  # mm around an eyeball in which skin is watched
+    return np.flatnonzero(np.linalg.norm(x - ball.centre, axis=1) < ball.radius + eye_reach)
+
+
+def _kept_out(points: Floats64, ball: Eyeball) -> tuple[Floats64, Floats64]:
+    """Least distance beside the cornea, and depth at rest, of points (..., 3) of the skin [mm]."""
+    away = points - ball.centre
+    distance = np.linalg.norm(away, axis=-1)
+    ahead = away[..., 2] / np.maximum(distance, 1e-9)
+    surface = ball_surface(ahead, ball.radius, ball.iris) + EYE_CLEARANCE
+    return np.minimum(distance, ball.radius + EYE_CLEARANCE), np.maximum(surface - distance, 0.0)
+
+
+def _long_faces(
+    surface: SkinSurface, vertices: Integers64, ball: Eyeball
+) -> tuple[Integers32, Floats64]:
+    """Triangles (T, 3) of some vertices whose middle may cut a ball while their corners touch it.
+
+    Also returns their longest edges [mm], (T,). They face away from the ball; others are the wall
+    of a socket, or the inner side of a lid.
+    """
+    cornea_radius = 7.8  # mm
+    # The middle of such an edge is deeper than its ends by a lid's thickness.
+    short = np.sqrt(8.0 * cornea_radius * EYE_CLEARANCE)
+    x = surface.positions
+    faces: Integers32 = surface.faces[np.isin(surface.faces, vertices).all(axis=1)]
+    edges = x[np.roll(faces, -1, axis=1)] - x[faces]
+    longest = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
+    outward = (cross_products(x, faces) * (x[faces].mean(axis=1) - ball.centre)).sum(axis=1)
+    chosen = (longest > short) & (outward > 0.0)
+    return faces[chosen], longest[chosen]
+
+
+def barycentric_grid() -> Floats64:
+    """Return the barycentric coordinates of points all over a triangle, shape (S, 3)."""
+    edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
+    n = edge_steps
+    steps = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
+    return np.array(steps, np.float64) / n
+
+
+@njit
+def keep_out_of_eyeballs(state: State, eyes: EyeContact, looks: Floats64) -> None:
+    """Move vertices out of the eyeballs and their corneas, and stop their approach.
+
+    looks: unit vector along which each eyeball looks, (eyes, 3).
+    """
+    x = state.x
+    for c in range(len(eyes.vertex)):
+        i = eyes.vertex[c]
+        e = eyes.eye[c]
+        ball = (eyes.radii[e], eyes.irises[e], eyes.tops[e])
+        away = between(eyes.centres[e], x[i])
+        depth = depth_in_ball(away, looks[e], ball, (eyes.least[c], eyes.sunk[c]))
+        if depth > 0.0:
+            push_out(state, i, away, depth)
+
+
+@njit
+def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
+    """Move long triangles that cut an eyeball outward, and stop the approach of their corners.
+
+    Corners move away from the ball's centre, by their weights in the deepest point (lid_lift.py).
+    A corner of several triangles moves as far as one of them needs.
+    """
+    x = state.x
+    shares = eyes.shares
+    lift = state.work  # first column: of each vertex [mm]
+    cut = False
+    for t in range(len(eyes.faces)):
+        a, b, c = eyes.faces[t]
+        e = eyes.face_eye[t]
+        centre = eyes.centres[e]
+        nearest = min(length(between(centre, x[a])), length(between(centre, x[b])))
+        nearest = min(nearest, length(between(centre, x[c])))
+        if nearest > eyes.face_reach[t]:
+            continue
+        ball = (eyes.radii[e], eyes.irises[e], eyes.tops[e])
+        deepest = 0.0
+        where = 0
+        for s in range(len(shares)):
+            away = mixed(x, (a, b, c), shares[s], centre)
+            kept = (eyes.face_least[t, s], eyes.face_sunk[t, s])
+            depth = depth_in_ball(away, looks[e], ball, kept)
+            if depth > deepest:
+                deepest = depth
+                where = s
+        if deepest == 0.0:
+            continue
+        if not cut:
+            lift[:, 0] = 0.0
+            cut = True
+        weight = shares[where]
+        part = deepest / (weight[0] ** 2 + weight[1] ** 2 + weight[2] ** 2)
+        for k in range(3):
+            i = eyes.faces[t, k]
+            lift[i, 0] = max(lift[i, 0], part * weight[k])
+    if cut:
+        for row in range(len(eyes.corners)):
+            i = eyes.corners[row]
+            if lift[i, 0] > 0.0:
+                push_out(state, i, between(eyes.centres[eyes.corner_eye[row]], x[i]), lift[i, 0])
+
+
+@njit
+def between(start: Floats64, end: Floats64) -> Triple:
+    """The vector from one point (3,) to another."""
+    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
+
+
+@njit
+def mixed(x: Floats64, at: tuple[int, int, int], weight: Floats64, centre: Floats64) -> Triple:
+    """The vector from `centre` (3,) to a point of a triangle with barycentric coordinates (3,)."""
+    a, b, c = at
+    return (
+        weight[0] * x[a, 0] + weight[1] * x[b, 0] + weight[2] * x[c, 0] - centre[0],
+        weight[0] * x[a, 1] + weight[1] * x[b, 1] + weight[2] * x[c, 1] - centre[1],
+        weight[0] * x[a, 2] + weight[1] * x[b, 2] + weight[2] * x[c, 2] - centre[2],
+    )
+
+
+@njit
+def length(vector: Triple) -> float:
+    """Length of a vector."""
+    return math.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+
+
+@njit
+def depth_in_ball(away: Triple, look: Floats64, ball: Triple, kept: tuple[float, float]) -> float:
+    """How far a point must move outward [mm], 0 or less for a point outside an eyeball.
+
+    away: from the ball's centre [mm]. look: unit vector along which the ball looks, (3,). ball:
+    radii of ball and iris, and distance that skin keeps from the centre before the pupil [mm].
+    kept: the point's `least` and `sunk` of `EyeContact` [mm].
+    """
+    distance = length(away)
+    if distance >= ball[2] or distance == 0.0:
+        return 0.0
+    ahead = (away[0] * look[0] + away[1] * look[1] + away[2] * look[2]) / distance
+    surface = ball_surface(ahead, ball[0], ball[1]) + EYE_CLEARANCE
+    depth: float = max(kept[0], surface - kept[1]) - distance
+    return depth
+
+
+@njit
+def push_out(state: State, i: int, away: Triple, way: float) -> None:
+    """Move a vertex by `way` [mm] along the vector `away`, and stop its approach against it."""
+    part = way / length(away)
+    for k in range(3):
+        state.x[i, k] += part * away[k]
+    stop_approach(state.v, i, away)
+
+
+@njit
+def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
+    """Remove the component of a vertex's velocity that points against `out`, the way out."""
+    dx, dy, dz = out
+    squared = dx * dx + dy * dy + dz * dz
+    approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
+    if approach < 0.0:
+        v[i, 0] -= approach * dx
+        v[i, 1] -= approach * dy
+        v[i, 2] -= approach * dz
