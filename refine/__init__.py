@@ -52,7 +52,7 @@ from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner,
 from .border.registry import Registry, create, parameters, refiners, takes_attributes
 from .border.stream import StreamArrays
 from .embedding.checker import check_embedding
-from .embedding.embedding import EmbeddedPoints, Embedding
+from .embedding.embedding import Binding, EmbeddedPoints, Embedding
 from .hosts import WeldedRefiner
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
@@ -78,6 +78,7 @@ __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
     "BaseRefiner",
+    "Binding",
     "Blended",
     "BrokenMeshError",
     "Coherent",

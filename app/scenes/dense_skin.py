@@ -85,10 +85,10 @@ def _embedded(
 
     Lips that were sealed face the same way, so their normals do not distinguish them.
     """
-    from risorius.refine import Embedding  # few heads need it
+    from risorius.refine import Binding, Embedding  # few heads need it
 
     coarse = (simulation.faces, simulation.rest_positions)
-    found = Embedding(*coarse, vertices, normals=normals)
+    found = Embedding(*coarse, vertices, binding=Binding(normals=normals))
     if lips is None:
         return found
     own, simulated = lips
@@ -101,14 +101,17 @@ def _embedded(
             better = Embedding(
                 *coarse,
                 vertices[wrong],
-                normals=normals[wrong],
-                labels=(np.zeros(len(wrong), np.int32), is_other_lip.astype(np.int32)),
+                binding=Binding(
+                    normals=normals[wrong],
+                    labels=(np.zeros(len(wrong), np.int32), is_other_lip.astype(np.int32)),
+                ),
             )
             triangles[wrong] = better.triangles
             weights[wrong] = better.weights
     if np.array_equal(triangles, found.triangles):
         return found
-    return Embedding(*coarse, vertices, normals=normals, places=(triangles, weights))
+    corrected = Binding(normals=normals, places=(triangles, weights))
+    return Embedding(*coarse, vertices, binding=corrected)
 
 
 def _smooth_normals(vertices: Floats64, faces: Integers32) -> Floats64:

@@ -23,7 +23,7 @@ class SkinPart(FacePart):
 
     def __init__(self, part: Part, skin: Floats64, faces: Integers32) -> None:
         """Bind a part with `roots` to the skin at rest, (V, 3), with triangles (F, 3)."""
-        from risorius.refine import Embedding  # lists of controls do not need it
+        from risorius.refine import Binding, Embedding  # lists of controls do not need it
 
         super().__init__(part)
         assert part.roots is not None
@@ -45,9 +45,11 @@ class SkinPart(FacePart):
             around.reshape(-1, 3),
             skin[self._near],
             rest,
-            normals=normals,
-            places=(number[feet.triangles], feet.weights),
-            groups=root_of,
+            binding=Binding(
+                normals=normals,
+                places=(number[feet.triangles], feet.weights),
+                groups=root_of,
+            ),
         )
 
     def follow(self, now: FaceNow) -> None:

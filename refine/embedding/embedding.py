@@ -6,6 +6,7 @@ patch's corners (patches.py), weighted by the barycentric coordinates of the poi
 are continuous across the edges of the coarse mesh, and no triangle is split.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,31 @@ class EmbeddedPoints(NamedTuple):
     """
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Binding:
+    """How each of N fine vertices finds its triangle among the F triangles of the coarse mesh.
+
+    - normals: directions in which the fine surface faces, of any length, shape (N, 3); a zero
+      vector allows any direction. A triangle that faces the other way counts as ten mean edges
+      farther away, so no vertex of one lip is bound to the other lip where they touch.
+    - labels: integers of fine vertices, shape (N,), and of triangles, (F,). A fine vertex is bound
+      only to triangles with its label.
+    - groups: integers, shape (N,). Fine vertices with the same number are bound to the point of the
+      first of them, so a hair keeps its shape.
+    - places: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace the
+      search: one for each group, numbered from 0 on, or one for each fine vertex.
+    """
+
+    normals: npt.ArrayLike | None = None
+    labels: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
+    groups: npt.ArrayLike | None = None
+    places: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
+
+
+NEAREST = Binding()
+"""Each fine vertex is bound to the nearest triangle, whichever way it faces."""
+
+
 class Embedding:
     """Moves a fine mesh along with a coarse mesh that deforms.
 
@@ -64,31 +90,23 @@ class Embedding:
         rest_positions: npt.ArrayLike,
         points: npt.ArrayLike,
         *,
-        normals: npt.ArrayLike | None = None,
-        labels: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        binding: Binding = NEAREST,
         crease_angle: float | None = None,
         stretch_offsets: bool = False,
-        places: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
-        groups: npt.ArrayLike | None = None,
     ) -> None:
         """Bind `points` at rest, shape (N, 3), to `faces`, (F, 3), of `rest_positions`, (V, 3).
 
-        `normals`: directions in which the fine surface faces, of any length, shape (N, 3); a zero
-        vector allows any direction. A triangle that faces the other way counts as ten mean edges
-        farther away, so no vertex of one lip is bound to the other lip where they touch. `labels`:
-        integers of fine vertices, shape (N,), and of triangles, (F,); a fine vertex is bound only
-        to triangles with its label. `crease_angle`: edges that are sharper at rest [degrees] stay
-        sharp. `stretch_offsets`: whether offsets are also scaled by the stretch of the surface
-        around them; else they only turn. `groups`, integers of shape (N,): fine vertices with the
-        same number are bound to the point of the first of them, so a hair keeps its shape.
-        `places`: triangles, shape (P,), and barycentric coordinates there, (P, 3), which replace
-        the search: one for each group, numbered from 0 on, or one for each fine vertex. Raises
-        ValueError for arrays that do not fit together, points that are not finite, and labels or
-        places without a triangle that has an area.
+        `binding`: how each fine vertex finds its triangle; by default the nearest one.
+        `crease_angle`: edges that are sharper at rest [degrees] stay sharp. `stretch_offsets`:
+        whether offsets are also scaled by the stretch of the surface around them; else they only
+        turn. Raises ValueError for arrays that do not fit together, points that are not finite, and
+        labels or places without a triangle that has an area.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         fine = checked_vectors("points", points, None)
-        directions = None if normals is None else checked_vectors("normals", normals, len(fine))
+        directions = None
+        if binding.normals is not None:
+            directions = checked_vectors("normals", binding.normals, len(fine))
         self._is_used = used_vertices(triangles, len(rest))
         self._positions = rest.copy()
         self._points = rest.astype(np.float32)  # not used; checks all values
@@ -96,15 +114,17 @@ class Embedding:
         self._stretch = 1.0 if stretch_offsets else 0.0
         mesh = with_creases(connect_writable(triangles, len(rest)), rest, crease_angle)
         is_proper = has_area(rest, triangles, SLIVER_SINE)
-        members = None if groups is None else _checked_labels("groups", groups, len(fine))
-        if places is not None:
-            found = _checked_places(places, labels, members, is_proper, len(fine))
+        groups = None
+        if binding.groups is not None:
+            groups = _checked_labels("groups", binding.groups, len(fine))
+        if binding.places is not None:
+            found = _checked_places(binding.places, binding.labels, groups, is_proper, len(fine))
         else:
-            bound, label_of = _groups(labels, len(fine), is_proper)
+            bound, label_of = _points_by_label(binding.labels, len(fine), is_proper)
             found = nearest_places(fine, directions, rest, triangles, bound)
             surface = SmoothSurface(mesh, rest, np.arange(len(triangles)))
             settle(fine, surface, across_edges(mesh, label_of), *found)
-            found = _shared_by_groups(members, *found)
+            found = _shared_by_groups(groups, *found)
         self.triangles = read_only(found[0])
         self.weights = read_only(found[1])
         used, numbers = np.unique(self.triangles, return_inverse=True)
@@ -218,12 +238,12 @@ def _checked_places(
     return given[number].astype(np.int64), weights[number]
 
 
-def _groups(
+def _points_by_label(
     labels: tuple[npt.ArrayLike, npt.ArrayLike] | None,
     count: int,
     is_proper: npt.NDArray[np.bool_],
 ) -> tuple[list[tuple[Integers64, Integers64]], Integers64]:
-    """Return groups of fine points with allowed triangles; and triangle labels, -1 for none."""
+    """Return for each label its fine points and triangles; and triangle labels, -1 for none."""
     label_of = np.where(is_proper, 0, -1).astype(np.int64)
     wanted = np.zeros(count, dtype=np.int64)
     names = np.zeros(1, dtype=np.int64)
@@ -234,14 +254,14 @@ def _groups(
         numbers = numbers.reshape(-1)
         wanted = numbers[:count]
         label_of = np.where(is_proper, numbers[count:], -1).astype(np.int64)
-    groups = []
+    found = []
     for number in np.unique(wanted):
         allowed = np.flatnonzero(label_of == number)
         if len(allowed) == 0:
             which = f" with label {names[number]}" if labels is not None else ""
             raise ValueError(f"faces must have a triangle{which} with an area to bind points to")
-        groups.append((np.flatnonzero(wanted == number), allowed))
-    return groups, label_of
+        found.append((np.flatnonzero(wanted == number), allowed))
+    return found, label_of
 
 
 def _checked_labels(name: str, given: npt.ArrayLike, count: int) -> Integers64:

@@ -101,7 +101,9 @@ def test_the_checker_names_the_broken_relation(flaw, relation):
 def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
     """The fine mesh is at rest if the coarse mesh is, and follows its rigid motion exactly."""
     fine = around(mesh)
-    embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
+    embedding = refine.Embedding(
+        mesh.faces, mesh.vertices, fine, binding=refine.Binding(normals=fine)
+    )
     rest = embedding.evaluate(mesh.vertices)
     assert rest.normals is not None
     assert_allclose(rest.positions, fine, atol=1e-12)
@@ -179,10 +181,15 @@ def test_normals_and_labels_keep_lips_apart():
     is_upper = np.arange(len(lips.faces)) >= len(lips.faces) // 2
     nearest = refine.Embedding(lips.faces, lips.vertices, fine)
     assert is_upper[nearest.triangles].tolist() == [True, False]
-    looking = refine.Embedding(lips.faces, lips.vertices, fine, normals=normals)
+    looking = refine.Embedding(
+        lips.faces, lips.vertices, fine, binding=refine.Binding(normals=normals)
+    )
     assert is_upper[looking.triangles].tolist() == [False, True]
     named = refine.Embedding(
-        lips.faces, lips.vertices, fine, labels=([7, 9], np.where(is_upper, 9, 7))
+        lips.faces,
+        lips.vertices,
+        fine,
+        binding=refine.Binding(labels=([7, 9], np.where(is_upper, 9, 7))),
     )
     assert is_upper[named.triangles].tolist() == [False, True]
 
@@ -225,7 +232,9 @@ def hairs():
 def test_groups_keep_their_shape_and_go_with_their_root():
     """A hair keeps its length and bend from rest; its root moves like a single bound point."""
     mesh, bent, points, hair = hairs()
-    embedding = refine.Embedding(mesh.faces, mesh.vertices, points, groups=10 * hair)
+    embedding = refine.Embedding(
+        mesh.faces, mesh.vertices, points, binding=refine.Binding(groups=10 * hair)
+    )
     assert_allclose(embedding.evaluate(mesh.vertices).positions, points, atol=1e-12)
     moved = embedding.evaluate(bent).positions.reshape(-1, 5, 3)
     at_rest = points.reshape(-1, 5, 3)
@@ -244,11 +253,15 @@ def test_given_places_replace_the_search():
     mesh, bent, points, hair = hairs()
     searched = refine.Embedding(mesh.faces, mesh.vertices, points)
     places = searched.triangles, searched.weights
-    given_to_all = refine.Embedding(mesh.faces, mesh.vertices, points, places=places)
+    given_to_all = refine.Embedding(
+        mesh.faces, mesh.vertices, points, binding=refine.Binding(places=places)
+    )
     expected = searched.evaluate(bent).positions
     assert_array_equal(given_to_all.evaluate(bent).positions, expected)
     of_roots = searched.triangles[::5], searched.weights[::5]
-    rooted = refine.Embedding(mesh.faces, mesh.vertices, points, places=of_roots, groups=hair)
+    rooted = refine.Embedding(
+        mesh.faces, mesh.vertices, points, binding=refine.Binding(places=of_roots, groups=hair)
+    )
     assert rooted.triangles.tolist() == of_roots[0][hair].tolist()
     assert_allclose(rooted.evaluate(bent).positions[::5], expected[::5], atol=1e-12)
 
@@ -261,7 +274,9 @@ def test_inputs_stay_and_values_are_carried():
     mesh = meshes.ball(1)
     fine = around(mesh)
     before = [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)]
-    embedding = refine.Embedding(mesh.faces, mesh.vertices, fine, normals=fine)
+    embedding = refine.Embedding(
+        mesh.faces, mesh.vertices, fine, binding=refine.Binding(normals=fine)
+    )
     embedding.evaluate(mesh.vertices)
     assert [each.tobytes() for each in (mesh.vertices, mesh.faces, fine)] == before
     assert_allclose(embedding.carry(np.ones(len(mesh.vertices))), 1.0)
@@ -307,7 +322,9 @@ def test_errors_say_what_is_allowed(changes, message):
     mesh = meshes.triangle()
     good = {"faces": mesh.faces, "rest_positions": mesh.vertices, "points": np.zeros((2, 3))}
     with pytest.raises(ValueError, match="^" + re.escape(message)):
-        refine.Embedding(**{**good, **changes})
+        own = {name: changes[name] for name in changes if hasattr(refine.Binding, name)}
+        others = {name: changes[name] for name in changes if name not in own}
+        refine.Embedding(**{**good, **others}, binding=refine.Binding(**own))
 
 
 def test_a_bad_frame_is_refused():
