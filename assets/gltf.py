@@ -93,7 +93,8 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
     starts = np.cumsum([0, *(len(piece.seen) for piece in pieces)])
     shifted = [piece.faces + start for piece, start in zip(pieces, starts, strict=False)]
     corners = np.vstack([np.zeros((0, 3), np.int64), *shifted])
-    picture = np.repeat([piece.picture for piece in pieces], [len(piece.faces) for piece in pieces])
+    face_counts = [len(piece.faces) for piece in pieces]
+    picture = np.repeat([piece.picture for piece in pieces], face_counts)
     same = np.concatenate([np.zeros(0, np.int64), *_same_vertices(pieces, starts)])
     faces = same[corners]
     has_area = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
@@ -286,8 +287,8 @@ class _Reader:
         if primitive.mode == self.STRIP:
             return strip_triangles(numbers)
         if primitive.mode == self.FAN:
-            first = np.full(max(len(numbers) - 2, 0), numbers[0] if len(numbers) else 0)
-            return np.stack([first, numbers[1:-1], numbers[2:]], axis=1)
+            hub = np.repeat(numbers[:1], max(len(numbers) - 2, 0))
+            return np.stack([hub, numbers[1:-1], numbers[2:]], axis=1)
         return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
 
 
@@ -353,7 +354,8 @@ def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:
     for _ in range(most_in_one_place):
         first, number = unique_points(stored[left] + 0.0)  # turns -0.0 into 0.0
         same[left] = left[first[number]]
-        left = left[abs(motion[left] - motion[same[left]]).max(axis=1) > least_distance]
+        apart = abs(motion[left] - motion[same[left]]).max(axis=1)
+        left = left[apart > least_distance]
         if not len(left):
             return same
     same[left] = left

@@ -178,11 +178,11 @@ class _Decompression:
         if packed is None:
             return
         accessors = self._document["accessors"]
-        missing = {
-            name: accessors[primitive["attributes"][name]]
-            for name in packed["attributes"]
-            if "bufferView" not in accessors[primitive["attributes"][name]]
-        }
+        missing = {}
+        for name in packed["attributes"]:
+            accessor = accessors[primitive["attributes"][name]]
+            if "bufferView" not in accessor:
+                missing[name] = accessor
         indices = accessors[primitive["indices"]] if "indices" in primitive else None
         if indices is not None and "bufferView" in indices:
             indices = None

@@ -90,10 +90,11 @@ class GeometryBuffer:
     def _read(self) -> Geometry:
         """Fetch the textures, top row first."""
         width, height = self.size
-        normal_depth, number_side_uv = (
-            np.frombuffer(texture.read(), np.float32).reshape(height, width, -1)[::-1]
-            for texture in self._textures
-        )
+        images = []
+        for texture in self._textures:
+            rows = np.frombuffer(texture.read(), np.float32).reshape(height, width, -1)
+            images.append(rows[::-1])  # the first row of a texture is the lowest
+        normal_depth, number_side_uv = images
         return Geometry(
             depth=np.ascontiguousarray(normal_depth[..., 3]),
             normal=np.ascontiguousarray(normal_depth[..., :3]),

@@ -25,19 +25,24 @@ def mesh_shader(
 
     maps: maps that tilt normals. of_skin: defines for the mouth and the fading of the skin.
     """
-    return [
-        "surface.glsl",
-        style.shading.name,
-        *(["WIREFRAME"] if style.has_wires else []),
-        *([] if style.colour_by is ColourBy.NONE else [style.colour_by.name]),
-        *(["TRIANGLES"] if style.has_numbered_triangles else []),
-        *(["TEXTURED"] if has_texture else []),
-        *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
-        *(["SHADOWS"] if style.shadows else []),
-        *(each.define for each in maps),
-        *of_skin,
-        *(["AROUND"] if style.light.around else []),
-    ]
+    shader = ["surface.glsl", style.shading.name]
+    if style.has_wires:
+        shader.append("WIREFRAME")
+    if style.colour_by is not ColourBy.NONE:
+        shader.append(style.colour_by.name)
+    if style.has_numbered_triangles:
+        shader.append("TRIANGLES")
+    if has_texture:
+        shader.append("TEXTURED")
+    if style.opacity < 1.0:
+        shader.append("TRANSLUCENT")
+    if style.shadows:
+        shader.append("SHADOWS")
+    shader += [each.define for each in maps]
+    shader += of_skin
+    if style.light.around:
+        shader.append("AROUND")
+    return shader
 
 
 def part_shader(

@@ -52,12 +52,11 @@ def compile_program(
         )
     except Exception as error:
         # The stage and the driver's first error, extracted from moderngl's long text.
-        at, complaint = (
-            found[0].strip() if (found := re.search(pattern, str(error))) else "?"
-            for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")
-        )
+        at = re.search(r"\w+(?=_shader)", str(error))
+        complaint = re.search(r"(?i).*error[:( ].*", str(error))
         raise GLError(
-            f"shader {' '.join([name, *defines])}, {at} stage: {complaint}. "
+            f"shader {' '.join([name, *defines])}, {at[0] if at else '?'} stage: "
+            f"{complaint[0].strip() if complaint else '?'}. "
             "Cure: update the OpenGL driver, or set LIBGL_ALWAYS_SOFTWARE=1"
         ) from None
 

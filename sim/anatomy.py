@@ -85,13 +85,18 @@ class Anatomy:
         (skin,) = self._in_head({"skin": [self._state.x]})["skin"]
         touched = np.square(skin - at).sum(axis=1).argmin()
         other_side = "_right" if self._model.skin.rest[touched, 0] > 0.0 else "_left"
-        nearest = {  # the first point is repeated: a fibre may be a single point
-            name: min(float(polyline_distance(at, np.vstack([x, x[-1:]]))[0]) for x in lines)
-            for name, lines in self.courses().items()
-            if lines and not name.endswith(other_side)
-        }
-        name = min(nearest, key=lambda each: nearest[each], default="")
-        return name if nearest.get(name, np.inf) <= reach else None
+        nearest = None
+        least = np.inf
+        for name, lines in self.courses().items():
+            if name.endswith(other_side):
+                continue
+            for line in lines:
+                # The last point is repeated, because a fibre may be a single point.
+                distance = polyline_distance(at, np.vstack([line, line[-1:]]))[0]
+                if distance < least:
+                    nearest = name
+                    least = distance
+        return nearest if least <= reach else None
 
     def penetrations(self) -> dict[str, float]:
         """Greatest depth of skin in other lip, eyeballs and teeth, minus the depth at rest [mm].

@@ -230,7 +230,9 @@ class _Reader:
         A side takes its own side of each entry. An entry without sides gives it half the weight,
         and the whole floor.
         """
-        weight, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
+        control_count = len(next(iter(below.values()), ()))
+        weight = np.zeros(control_count)
+        floor = np.zeros(control_count)
         for control, part in row.entries.items():
             sided = control + side
             weight += part * (below[sided] if sided in below else 0.5 * below[control])

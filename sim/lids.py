@@ -121,9 +121,13 @@ def _lid_vertices(
     apertures = np.array([part.opening.max() for part in parts])
     areas = rig.tissue.stiffness_scale * surface.areas[joined.vertex]
     hold = eyes.lid_stiffness * areas * joined.weight
+    eye_numbers = np.repeat(np.arange(len(parts)), [len(part.vertex) for part in parts])
+    across = np.array([np.cross(up, forward) for up, forward in axes])
+    to_nose = np.array([[-ball.side.sign] for ball in eyeballs])
+    gaze_factors = np.array([ball.gaze_factor for ball in eyeballs])
     vertices = LidVertices(
         vertex=joined.vertex.astype(np.int32),
-        eye=np.repeat(np.arange(len(parts)), [len(part.vertex) for part in parts]).astype(np.int32),
+        eye=eye_numbers.astype(np.int32),
         upper=joined.upper,
         closing=joined.closing,
         overlap=joined.overlap,
@@ -138,12 +142,10 @@ def _lid_vertices(
         radii=np.array([ball.radius for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
         forward=np.array([forward for _, forward in axes]),
-        inward=np.array([np.cross(up, forward) for up, forward in axes])
-        * np.array([[-ball.side.sign] for ball in eyeballs]),
+        inward=across * to_nose,
         slide=eyes.blink_slide,
         raise_slide=eyes.raise_slide,
-        gaze_fraction=np.array([ball.gaze_factor for ball in eyeballs])
-        * gaze_fractions_of(apertures),
+        gaze_fraction=gaze_factors * gaze_fractions_of(apertures),
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,

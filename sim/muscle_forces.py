@@ -176,23 +176,24 @@ def build_muscle_forces(
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
+    tones = [rig.tissue.passive * at.muscle.tone for at in placed]
+    lip_weights = [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed]
+    carries = _carries(placed, order, strength, stack)
     least_stiffness = 0.4  # per area, in units of the rig: weaker attachments are dropped
     least = least_stiffness * strength
     return MuscleForces(
         names=tuple(at.name for at in placed),
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
         slides_lips=np.array([at.muscle.slides_lips for at in placed], dtype=np.float64),
-        reaches_lips=np.array(
-            [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
-        ),
+        reaches_lips=np.array(lip_weights, dtype=np.float64),
         bundle=bundle,
         stack=stack,
         skin=SkinAttachments(
             muscle=bundle.muscle,
-            passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], np.float64),
+            passive=np.array(tones, np.float64),
             holds=_attachments(holds, least, np.zeros((0, 3))),
             pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
-            carries=_attachments(_carries(placed, order, strength, stack), least, np.zeros(0)),
+            carries=_attachments(carries, least, np.zeros(0)),
         ),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
@@ -289,16 +290,25 @@ def _carries(
 def _attachments(
     parts: list[tuple[Floats64, Floats64]], least: Floats64, empty: Floats64
 ) -> Attachments:
-    """Concatenate the vertices with enough weight of all parts (weight, value)."""
-    on = [np.flatnonzero(weight > least) for weight, _ in parts]
-    nothing = np.zeros(0, dtype=np.int64)
+    """Concatenate the vertices with enough weight of all parts (weight, value).
+
+    least: a greater weight is enough, (V,). empty: the value of a part without vertices.
+    """
+    counts = [0]
+    vertices = [np.zeros(0, dtype=np.int64)]
+    weights = [np.zeros(0)]
+    values = [empty]
+    for weight, value in parts:
+        held = np.flatnonzero(weight > least)
+        counts.append(len(held))
+        vertices.append(held)
+        weights.append(weight[held])
+        values.append(value[held])
     return Attachments(
-        rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.uint32),
-        vertex=np.concatenate([*on, nothing]).astype(np.uint32),
-        weight=np.concatenate(
-            [*(p[0][rows] for p, rows in zip(parts, on, strict=True)), np.zeros(0)]
-        ),
-        value=np.concatenate([*(p[1][rows] for p, rows in zip(parts, on, strict=True)), empty]),
+        rows=np.cumsum(counts).astype(np.uint32),
+        vertex=np.concatenate(vertices).astype(np.uint32),
+        weight=np.concatenate(weights),
+        value=np.concatenate(values),
     )
 
 

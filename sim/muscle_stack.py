@@ -103,14 +103,17 @@ def _carried(
     holds = [attach(beneath, line, landmarks, attached) for line in beneath.lines]
     along = [points_along(line, hold.arc) for line, hold in zip(beneath.lines, holds, strict=True)]
     strongest = np.argmax([hold.weight for hold in holds], axis=0)
-    each = strongest, np.arange(len(at))
+    chosen = strongest, np.arange(len(at))
+    arcs = np.array([hold.arc for hold in holds])[chosen]
+    weights = np.array([hold.weight for hold in holds])[chosen]
+    steady = np.array([hold.steady for hold in holds])[chosen]
     return _Carried(
         at,
         first + strongest,
-        np.array([hold.arc for hold in holds])[each] * (SAMPLE_COUNT - 1),
-        np.array(along)[each],
-        np.array([hold.weight for hold in holds])[each],
-        np.array([hold.steady for hold in holds])[each],
+        arcs * (SAMPLE_COUNT - 1),
+        np.array(along)[chosen],
+        weights,
+        steady,
     )
 
 

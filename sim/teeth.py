@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
+from ..geometry.arrays import Flags, Floats64, Integers32
 from . import checked
 from .coordinates import FaceSpace
 from .skull import RigidMotion
@@ -50,7 +50,10 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
 
     Skin that starts inside an arch may not sink deeper.
     """
-    rows: list[tuple[Integers64, bool, Floats64, Floats64]] = []
+    vertices = [np.zeros(0, dtype=np.int64)]
+    is_lower = [np.zeros(0, dtype=np.bool_)]
+    arches = [np.zeros((0, 5))]
+    resting = [np.zeros(0)]
     given = () if parts is None else parts
     teeth_reach = 18.0  # mm around an arch in which skin is watched
     bones = ("cranium", "mandible")
@@ -67,16 +70,16 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
             near &= off[:, 1] > low - teeth_reach
             near &= off[:, 1] < high + teeth_reach
             near &= off[:, 2] > 0.0
-            vertices = np.flatnonzero(near)
-            rows.append((vertices, part.bone == "mandible", arch, inside[vertices]))
-    if not rows:
-        nothing = np.zeros(0)
-        return Teeth(nothing.astype(np.int32), nothing > 0.0, np.zeros((0, 5)), nothing)
+            watched = np.flatnonzero(near)
+            vertices.append(watched)
+            is_lower.append(np.full(len(watched), part.bone == "mandible"))
+            arches.append(np.tile(arch, (len(watched), 1)))
+            resting.append(np.minimum(inside[watched], 1.0))
     return Teeth(
-        np.concatenate([v for v, _, _, _ in rows]).astype(np.int32),
-        np.concatenate([np.full(len(v), lower) for v, lower, _, _ in rows]),
-        np.vstack([np.tile(arch, (len(v), 1)) for v, _, arch, _ in rows]),
-        np.concatenate([np.minimum(inside, 1.0) for _, _, _, inside in rows]),
+        np.concatenate(vertices).astype(np.int32),
+        np.concatenate(is_lower),
+        np.vstack(arches),
+        np.concatenate(resting),
     )
 
 

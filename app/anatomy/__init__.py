@@ -77,17 +77,12 @@ class Anatomy:
         if face is None or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
             openings = self._openings()
-            return Dissection(
-                tuple(
-                    place(
-                        each,
-                        bones,
-                        throws_shadow=each.name in (*OUTER_HAIR, GLASSES, MASK),
-                        opening=openings.get(opening_before(each.name, each.bone)),
-                    )
-                    for each in parts
-                )
-            )
+            placed = []
+            for each in parts:
+                is_outside = each.name in (*OUTER_HAIR, GLASSES, MASK)
+                opening = openings.get(opening_before(each.name, each.bone))
+                placed.append(place(each, bones, throws_shadow=is_outside, opening=opening))
+            return Dissection(tuple(placed))
         structures = [
             place(part, bones, lies_beneath=True, throws_shadow=True)
             for part in self._structures(face, view)

@@ -58,7 +58,8 @@ def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: 
             most = max(most, frame.triangle_count)
             while wanted and wanted[0].time <= now + half:
                 named.append((wanted.pop(0).name or "", frame.image))
-    save_png(sheet, contact_sheet(named, columns=min(len(named), 2 if options.beside else 3)))
+    most_columns = 2 if options.beside else 3
+    save_png(sheet, contact_sheet(named, columns=min(len(named), most_columns)))
     return most
 
 

@@ -105,10 +105,14 @@ def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 
         f"'{key}' was read as quaternions {order}, with x to the subject's left, y up and z ahead."
     )
     roll = -1 if is_scalar_first else 0
-    return [
-        None if each is None else np.asarray(Rotation.from_quat(np.roll(each, roll)).as_matrix())
-        for each in quaternions
-    ]
+    matrices: list[Floats64 | None] = []
+    for each in quaternions:
+        if each is None:
+            matrices.append(None)
+        else:
+            rotation = Rotation.from_quat(np.roll(each, roll))
+            matrices.append(np.asarray(rotation.as_matrix()))
+    return matrices
 
 
 def _quaternion(value: Any) -> Floats64 | None:

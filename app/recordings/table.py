@@ -244,12 +244,11 @@ def _layout_of(text: str, header: str) -> Layout:
     if best.is_plain and best.delimiter == "," and "%" not in text[:decimals_sought]:
         return best
     cells = [cell.strip() for _, row in best.rows_of(sample) for cell in row]
+    points = [cell.replace(",", ".") for cell in cells]
     return replace(
         best,
         has_decimal_commas=any(DECIMAL_COMMA.fullmatch(cell.rstrip(" %")) for cell in cells),
-        has_percents=any(
-            without_percent(cell.replace(",", ".")) != cell.replace(",", ".") for cell in cells
-        ),
+        has_percents=any(without_percent(cell) != cell for cell in points),
     )
 
 

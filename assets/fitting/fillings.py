@@ -55,7 +55,8 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
     vertices = to_face.points(mesh.vertices)
     points = to_face.points(landmarks)
     piece = pieces_of(mesh.faces, len(mesh.vertices))
-    own = np.flatnonzero(piece[mesh.faces[:, 0]] == np.bincount(piece[indices]).argmax())
+    face_piece = np.bincount(piece[indices]).argmax()  # the piece with most landmarks
+    own = np.flatnonzero(piece[mesh.faces[:, 0]] == face_piece)
     openings = []
     triangles = []
     for name, chains in OPENINGS.items():
@@ -98,7 +99,8 @@ def _filling(
     centroids = vertices[faces].mean(axis=1)
     near = np.flatnonzero(np.linalg.norm(centroids - centre, axis=1) < 0.6 * width)
     used = np.unique(faces[near])
-    ends = used[scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])[1]]
+    _, nearest = scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])
+    ends = used[nearest]
     for scale in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
         shrunk = centre + scale * (edge - centre)
         inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
@@ -156,8 +158,10 @@ def _without_teeth(faces: Integers32, found: Integers) -> Integers:
         found = found[shared > 1]
     if not len(found):
         return found
-    piece = pieces_of(faces[found], int(faces.max()) + 1)[faces[found, 0]]
-    return np.asarray(found[piece == np.bincount(piece).argmax()])
+    vertex_piece = pieces_of(faces[found], int(faces.max()) + 1)
+    piece = vertex_piece[faces[found, 0]]
+    largest = np.bincount(piece).argmax()
+    return np.asarray(found[piece == largest])
 
 
 def _is_disc(faces: Integers32) -> bool:

@@ -71,9 +71,10 @@ def with_human_opening(
 
 def _spread(points: Floats64, faces: Integers32) -> Floats64:
     """Return points on triangles, (n, 3), so dense that every section contains some."""
-    weights = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]
+    sixths = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]  # barycentric coordinates
     corners = points[faces]
-    return np.concatenate([np.einsum("fcx,c->fx", corners, np.array(s) / 6.0) for s in weights])
+    spread = [np.einsum("fcx,c->fx", corners, np.array(place) / 6.0) for place in sixths]
+    return np.concatenate(spread)
 
 
 def _ear(points: Floats64) -> tuple[float, float] | None:

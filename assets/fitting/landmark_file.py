@@ -85,7 +85,8 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, Floats64], frozenset[i
         marked = [number for number, entry in enumerate(found) if entry is not None]
         if not marked:
             return {}, frozenset()
-        found = [found[marked[0]] if entry is None else entry for entry in found]
+        any_entry = found[marked[0]]  # stands for missing ones
+        found = [any_entry if entry is None else entry for entry in found]
         are_indices = _are_indices(found)
         count = len(mesh.vertices)
         points = mesh.vertices[_indices(found, count)] if are_indices else _points(found)
@@ -102,7 +103,8 @@ def landmarks_text(points: Mapping[int, Sequence[float]], guessed: Iterable[int]
 
     points: number of the landmark -> point. guessed: numbers of guessed landmarks.
     """
-    rows = ",\n    ".join(json.dumps(points.get(number)) for number in range(LANDMARK_COUNT))
+    entries = [json.dumps(points.get(number)) for number in range(LANDMARK_COUNT)]
+    rows = ",\n    ".join(entries)
     return f'{{\n  "{LIST_KEY}": [\n    {rows}\n  ],\n  "{GUESSED_KEY}": {sorted(guessed)}\n}}\n'
 
 
@@ -214,18 +216,16 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
     the shorter path along the skin.
     """
     used = np.unique(faces)
-    indices: Integers32 = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
-        np.int32
-    )
+    _, nearest = scipy.spatial.cKDTree(vertices[used]).query(points)
+    indices: Integers32 = used[nearest].astype(np.int32)
     to_upper, to_lower = (
         path_lengths(vertices, faces, indices[list(lip)]).min(axis=0) for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
-            indices[list(lip)] = own[
-                scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])[1]
-            ]
+            _, nearest = scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])
+            indices[list(lip)] = own[nearest]
     return indices
 
 

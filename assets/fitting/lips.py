@@ -130,7 +130,8 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     if len(parts) != 2:
         return None
     up = np.subtract(*landmarks[list(OUTER_MIDDLES)])
-    heights = [float(mesh.vertices[mesh.faces[part]].mean(axis=(0, 1)) @ up) for part in parts]
+    centroids = [mesh.vertices[mesh.faces[part]].mean(axis=(0, 1)) for part in parts]
+    heights = [float(centroid @ up) for centroid in centroids]
     below = parts[int(np.argmin(heights))]
     corners = mesh.faces if mesh.corners is None else mesh.corners
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
@@ -156,13 +157,15 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
 def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
     """Find a path of edges along a line (n, 3): vertex indices; None if no path joins its ends."""
     used = np.unique(mesh.faces)
-    ends = used[scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])[1]]
+    _, nearest = scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])
+    ends = used[nearest]
     edges = edges_of(mesh.faces)
     points = mesh.vertices[edges]
     lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     off = _distances(points.mean(axis=1), line)
     # An edge at this distance from the line counts as twice as long.
-    near = 0.01 * float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    near = 0.01 * length
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
     graph = edge_graph(edges, weights, len(mesh.vertices))
     before = csgraph.dijkstra(graph, directed=False, indices=ends[0], return_predecessors=True)[1]

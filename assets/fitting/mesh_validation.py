@@ -183,7 +183,8 @@ def check_openings(skin: SkinPiece) -> None:
         )
     corners = skin.vertices[skin.faces]
     for side, pairs in LID_PAIRS.items():
-        centre = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
+        numbers = [number for pair in pairs for number in pair]
+        centre = skin.vertices[skin.landmarks[numbers]].mean(axis=0)
         if is_covered(corners, centre) and not _is_slit(skin, side):
             raise CoveredError(
                 f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
@@ -227,7 +228,9 @@ def _across_and_around(
     """
     paths = path_lengths(skin.vertices, skin.faces, skin.landmarks[list(pair)])
     ends = skin.landmarks[list(corners)]
-    return float(paths[0, skin.landmarks[pair[1]]]), float(paths[:, ends].sum(axis=0).min())
+    across = paths[0, skin.landmarks[pair[1]]]
+    around = paths[:, ends].sum(axis=0).min()
+    return float(across), float(around)
 
 
 def without_bag(skin: SkinPiece) -> SkinPiece:

@@ -87,8 +87,8 @@ def _behind_lids(
     def off(values: Floats64) -> Floats64:
         """Return errors of the sphere: gaps to the lids in sectors, sideways shift, growth."""
         size = radius * np.exp(values[3])
-        gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
-        gaps -= size + LID_CLEARANCE
+        distances = [np.linalg.norm(part - values[:3], axis=1).min() for part in parts]
+        gaps = np.array(distances) - (size + LID_CLEARANCE)
         aside_cost = 2.0  # per millimetre, because an eye lies behind the centre of its opening
         aside = aside_cost * (values[:2] - centre[:2])
         size_cost = 20.0  # [mm] for a sphere twice as large

@@ -59,7 +59,9 @@ def spread_uv(
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
     # Necks and shoulders below the built-in head have their feet on its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
-    on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
+    is_on_rim = np.zeros(len(known.vertices))
+    is_on_rim[rim] = 1.0
+    on_rim = nearest.interpolate(is_on_rim)
     count = len(vertices)
     links = edges_of(faces)
     trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
@@ -239,9 +241,9 @@ def maps_in(
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change, slope)
     steepest_percentile = 99.9  # [%] of slopes that are not clipped
-    steepest = (
-        max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6) if len(slope) else 1.0
-    )
+    steepest = 1.0
+    if len(slope):
+        steepest = max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6)
     wrinkles = np.full((MAP_SIZE, MAP_SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])

@@ -121,9 +121,11 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     _, first_corner = np.unique(number, return_index=True)
     parted = number.reshape(faces.shape)
     piece = pieces_of(parted, len(first_corner))
-    kept = parted[piece[parted[:, 0]] == np.bincount(piece[parted[:, 0]]).argmax()]
-    used, indices = np.unique(kept, return_inverse=True)
-    return vertices[faces.ravel()[first_corner[used]]], indices.reshape(-1, 3).astype(np.int32)
+    face_piece = piece[parted[:, 0]]
+    largest = np.bincount(face_piece).argmax()
+    used, indices = np.unique(parted[face_piece == largest], return_inverse=True)
+    old_vertices = faces.ravel()[first_corner[used]]
+    return vertices[old_vertices], indices.reshape(-1, 3).astype(np.int32)
 
 
 def _joined(

@@ -257,7 +257,8 @@ def _haired_segments(features: Features, behind: Floats32) -> Image:
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
-    texels[haired[grown_over(behind.reshape(-1)[haired]) < 0.5]] = Segment.SKIN
+    is_bald = grown_over(behind.reshape(-1)[haired]) < 0.5
+    texels[haired[is_bald]] = Segment.SKIN
     if features.brows is not None:
         texels[_texels_of(Segment.RIGHT_BROW, Segment.LEFT_BROW)] = Segment.SKIN
         hairs = painted(features.brows, len(found))

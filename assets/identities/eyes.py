@@ -132,7 +132,8 @@ def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
     lighter += iris.fibres * _fibres(part, eye, aside, iris.seed)
     varied *= 2.0 ** lighter[:, None] * (1.0 + ring[:, None] * (brown - 1.0))
     is_iris = (aside < 1.0)[:, None]
-    return np.asarray(np.where(is_iris, np.clip(to_screen(varied), 0.0, 1.0), colours), np.float32)
+    iris_colours = np.clip(to_screen(varied), 0.0, 1.0)
+    return np.asarray(np.where(is_iris, iris_colours, colours), np.float32)
 
 
 def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:

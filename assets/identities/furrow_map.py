@@ -169,18 +169,25 @@ def _places(shrink: int) -> _Places:
     kept = np.maximum(1.0 - taken, 0.0)[..., None]
     near[..., :3] = FLAT_TEXEL + kept * (near[..., :3] - FLAT_TEXEL)
     is_between = between > 1e-3
-    near[is_between, 3] = 255.0 * (between / np.maximum(between + above, 1e-9))[is_between]
+    share_between = between / np.maximum(between + above, 1e-9)
+    near[is_between, 3] = 255.0 * share_between[is_between]
     plain[rows, columns] = np.rint(near)
     x_sample = _sample_of(FOREHEAD_REACH, x)
     radii = _sample_of(FEET_REACH, radius)
     one = np.ones_like(x)
     corner = rows.start, columns.start
+    feet = []
+    folds = []
+    for side in (1, -1):
+        is_on_side = side * x > 0.0
+        feet.append(_region(corner, fan * is_on_side, angle, radii, radius))
+        folds.append(_fold(corner, fold * is_on_side, near))
     return _Places(
         plain,
         _region(corner, above, leaning, x_sample, one),
         _region(corner, between, x, _sample_of(GLABELLA_REACH, y), one),
-        tuple(_region(corner, fan * (side * x > 0.0), angle, radii, radius) for side in (1, -1)),
-        tuple(_fold(corner, fold * (side * x > 0.0), near) for side in (1, -1)),
+        tuple(feet),
+        tuple(folds),
     )
 
 
@@ -192,8 +199,8 @@ def _face(size: int) -> tuple[slice, slice, Floats64]:
     corners = head.uv[head.face_uv].astype(np.float64)
     corners[~is_face] = -1.0  # outside the map
     texels = Texels.within(corners, (size, size))
-    spans = [(int(each.min()), int(each.max()) + 1) for each in (texels.rows, texels.columns)]
-    rows, columns = (slice(*span) for span in spans)
+    rows = slice(int(texels.rows.min()), int(texels.rows.max()) + 1)
+    columns = slice(int(texels.columns.min()), int(texels.columns.max()) + 1)
     place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), FAR_AWAY)
     at = texels.rows - rows.start, texels.columns - columns.start
     place[at] = texels.interpolate(head.vertices[head.faces])

@@ -128,7 +128,12 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
     kind, _, share, bald = random.uniform(0.0, 1.0, 4)
     front = float(np.clip(random.normal(0.0, 3.0), -6.0, 6.0))
     straight, round_ = (0.46, 0.57) if is_man else (0.43, 0.82)
-    temples = 0.0 if kind < straight else -5.0 if kind < round_ else 6.0 + 6.0 * share
+    if kind < straight:
+        temples = 0.0
+    elif kind < round_:
+        temples = -5.0
+    else:
+        temples = 6.0 + 6.0 * share
     late = max(years - 25.0, 0.0) / 50.0
     receded = 22.0 * late * share**0.7 if is_man else 3.0 * late
     return Hairline(

@@ -86,9 +86,12 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
     # Young skin has shallower wrinkles; how much shallower is assumed.
     depths = (0.72 + 0.5 * late) * (0.92 + 0.16 * man) * np.exp2(0.35 * np.array(deep))
     of_forehead, of_frown, of_feet, of_fold = (depths * [1.0, 1.0, 1.12 - 0.12 * man, 1.0]).tolist()
+    furrow_count = np.rint(3.1 + 1.3 * late + 1.1 * count)
+    feet_count = np.rint(3.6 + 1.8 * late + 0.9 * feet)
+    kinds_of_fan = (Fan.WHOLE, Fan.LOWER, Fan.UPPER, Fan.CENTRAL)
     return Lines(
         seed=seed,
-        forehead=int(np.clip(np.rint(3.1 + 1.3 * late + 1.1 * count), 1, 6)),
+        forehead=int(np.clip(furrow_count, 1, 6)),
         spread=tuple(Spread)[int((spread > spreads).sum())],
         dip=-0.5 + 4.5 * dip,
         broken=broken,
@@ -96,8 +99,8 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
         frown=1 + int(frown > 0.06) + int(frown > 0.87),
         uneven=0.7 * uneven,
         frown_depth=of_frown,
-        feet=int(np.clip(np.rint(3.6 + 1.8 * late + 0.9 * feet), 2, 7)),
-        fan=(Fan.WHOLE, Fan.LOWER, Fan.UPPER, Fan.CENTRAL)[int((fan > fans).sum())],
+        feet=int(np.clip(feet_count, 2, 7)),
+        fan=kinds_of_fan[int((fan > fans).sum())],
         reach=12.0 + 6.0 * late + 5.0 * reach,
         feet_depth=of_feet,
         fold_depth=of_fold,

@@ -107,19 +107,19 @@ def _make_head(identity: Identity) -> Person:
     skin = FittedSkin(vertices, normals, known.faces, landmarks, known.mandible_weight)
     jaw_axis = warp.points(known.jaw_axis)
     jaws = opened_jaws(jaw_axis, known.rig)
-    parts = place_parts(known, skin, warp, eyes, jaws, kept_bone="neck")
+    parts = []
+    for part in place_parts(known, skin, warp, eyes, jaws, kept_bone="neck"):
+        if part.bone == "neck":
+            moved = _on_neck(part.vertices.astype(float), *neck)
+            part = replace(part, vertices=moved.astype(np.float32))
+        parts.append(part)
     return Person(
         vertices=vertices,
         faces=known.faces,
         landmarks=known.landmarks,
         bone_depth=larger * known.bone_depth,
         eyes=eyes,
-        parts=tuple(
-            replace(part, vertices=_on_neck(part.vertices.astype(float), *neck).astype(np.float32))
-            if part.bone == "neck"
-            else part
-            for part in parts
-        ),
+        parts=tuple(parts),
         uv=known.uv,
         face_uv=known.face_uv,
         albedo=known.albedo,

@@ -61,20 +61,16 @@ def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
             "AU26": 0.22 * smile.drop,
         },
     }
-    return tuple(
-        replace(
-            layer,
-            rows={
-                name: _with_weights(row, added.get(name, {})) for name, row in layer.rows.items()
-            },
-        )
-        for layer in layers
-    )
+    changed = []
+    for layer in layers:
+        rows = {name: _with_weights(row, added.get(name, {})) for name, row in layer.rows.items()}
+        changed.append(replace(layer, rows=rows))
+    return tuple(changed)
 
 
 def _with_weights(row: Mapping[str, Any], added: Mapping[str, float]) -> Mapping[str, Any]:
     """Add to some weights of a row, and clip them to 0 to 1."""
-    changed = {
-        name: float(np.clip(row.get(name, 0.0) + more, 0.0, 1.0)) for name, more in added.items()
-    }
-    return {**row, **changed}
+    changed = dict(row)
+    for name, more in added.items():
+        changed[name] = float(np.clip(row.get(name, 0.0) + more, 0.0, 1.0))
+    return changed

@@ -262,6 +262,12 @@ def sample_identity(
     is_woman = sex is Sex.WOMAN
     seen, hooded = np.clip(random.normal(size=2), -2.0, 2.0)
     spread = 1.0 + 0.06 * late
+    coverage = 1.7 - 0.3 * is_woman + 0.6 * covered + 0.15 * late
+    larynx_range = (0.0, 0.8) if is_woman else (1.5, 5.0)  # [mm]
+    smile = drawn_smile(is_woman, random)
+    larynx = float(random.uniform(*larynx_range))
+    lines = drawn_lines(not is_woman, age, random)
+    leanness = np.clip(random.normal(), -2.0, 2.0)
     return Identity(
         sex,
         age,
@@ -269,16 +275,16 @@ def sample_identity(
         cut,
         tuple(weights.tolist()),
         tuple(uneven.tolist()),
-        covered=float(np.clip(1.7 - 0.3 * is_woman + 0.6 * covered + 0.15 * late, 0.5, 3.0)),
+        covered=float(np.clip(coverage, 0.5, 3.0)),
         corners=float(0.7 + 0.3 * is_woman + 0.65 * corners - 0.08 * late),
-        brows=float((1.0 if is_woman else 0.0) + 1.2 * brows - 0.2 * late),
+        brows=float(1.0 * is_woman + 1.2 * brows - 0.2 * late),
         furrows=furrows,
         seen_lid=float(1.2 + 0.5 * is_woman + spread * seen),
         hooding=float(max(0.3 + 0.5 * hooded + 0.25 * late, 0.0)),
-        smile=drawn_smile(is_woman, random),
-        larynx=float(random.uniform(*((0.0, 0.8) if is_woman else (1.5, 5.0)))),
-        lines=drawn_lines(not is_woman, age, random),
-        sternomastoid=float(-0.35 + 0.25 * late + 0.4 * np.clip(random.normal(), -2.0, 2.0)),
+        smile=smile,
+        larynx=larynx,
+        lines=lines,
+        sternomastoid=float(-0.35 + 0.25 * late + 0.4 * leanness),
     )
 
 

@@ -36,10 +36,12 @@ def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
     """Shape both muscles in a map of (size, size) texels."""
     height = height_of(person)
     tendon = max(height, 0.0)  # the built-in head shows no tendon, so it cannot sink
-    return tuple(
-        belly._replace(heights=height * belly.heights + tendon * front.heights)
-        for belly, front in (_raised(size, side) for side in (1.0, -1.0))
-    )
+    muscles = []
+    for side in (1.0, -1.0):
+        belly, front = _raised(size, side)
+        heights = height * belly.heights + tendon * front.heights
+        muscles.append(belly._replace(heights=heights))
+    return tuple(muscles)
 
 
 @lru_cache(maxsize=4)

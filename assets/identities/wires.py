@@ -28,7 +28,7 @@ def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -
     head = skin[skin[:, 2] > end[2] + 10.0]  # without the ear
     tree = scipy.spatial.cKDTree(head[:, 1:])
     near = tree.query_ball_point(straight[:, 1:], 6.0)
-    widest = np.array([max((side * head[found, 0]).max(initial=0.0), 0.0) for found in near])
+    widest = np.array([(side * head[found, 0]).max(initial=0.0) for found in near])
     least = np.maximum(side * straight[:, 0], widest + radius + 1.8)
     least[0] = side * straight[0, 0]
     wanted = least.copy()

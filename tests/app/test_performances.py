@@ -68,8 +68,8 @@ def test_the_default_lead_equals_the_lag_of_the_skin(face):
             gaps.append(upper - lower)
         shifts = range(-5, 11)
         middle = np.arange(20, len(gaps) - 20)
-        fits = [np.corrcoef(take.channels["jawOpen"][middle], np.array(gaps)[middle + shift])[0, 1]
-                for shift in shifts]  # fmt: skip
+        wanted = take.channels["jawOpen"][middle]
+        fits = [np.corrcoef(wanted, np.array(gaps)[middle + shift])[0, 1] for shift in shifts]
         late[lead] = shifts[int(np.argmax(fits))]
     assert late[0.0] >= 2, "frames that the lips are late"
     assert abs(late[LEAD_TIME]) <= 1

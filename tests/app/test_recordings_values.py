@@ -113,11 +113,12 @@ def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
         columns[flag] = [unseen if each else seen for each in lost]
     if is_json:
         names = [name for name in columns if name != flag]
-        frames = [
-            {"t": time, "blendshapes": {name: float(columns[name][row]) for name in names}}
-            | ({flag: columns[flag][row]} if flag else {})
-            for row, time in enumerate(TIMES.tolist())
-        ]
+        frames = []
+        for row, time in enumerate(TIMES.tolist()):
+            shapes = {name: float(columns[name][row]) for name in names}
+            frames.append({"t": time, "blendshapes": shapes})
+            if flag:
+                frames[-1][flag] = columns[flag][row]
         take = of_json(tmp_path, frames)
     else:
         take = of_table(tmp_path, columns)
@@ -150,13 +151,19 @@ TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up: + is to
 def heads():
     """For each layout: values of the frames, their key, and the sign of yaw."""
     quaternions = TURNS.as_quat()
+    degrees = [{"yaw": yaw, "pitch": 1.0, "roll": 0.5} for yaw in YAW]
+    radians = [{"Yaw": yaw, "Pitch": 0.01} for yaw in np.radians(YAW)]
+    scalar_last = [list(each) for each in quaternions]
+    scalar_first = [list(np.roll(each, 1)) for each in quaternions]
+    named = [dict(zip("xyzw", each, strict=True)) for each in quaternions]
+    matrices = [turn.tolist() for turn in TURNS.as_matrix()]
     return {
-        "degrees": ([{"yaw": y, "pitch": 1.0, "roll": 0.5} for y in YAW], "headRotation", -1.0),
-        "radians": ([{"Yaw": y, "Pitch": 0.01} for y in np.radians(YAW)], "head_pose", -1.0),
-        "x, y, z, w": ([list(q) for q in quaternions], "headQuaternion", 1.0),
-        "w, x, y, z": ([list(np.roll(q, 1)) for q in quaternions], "rotation", 1.0),
-        "named": ([dict(zip("xyzw", q, strict=True)) for q in quaternions], "orientation", 1.0),
-        "3 x 3": ([turn.tolist() for turn in TURNS.as_matrix()], "headMatrix", 1.0),
+        "degrees": (degrees, "headRotation", -1.0),
+        "radians": (radians, "head_pose", -1.0),
+        "x, y, z, w": (scalar_last, "headQuaternion", 1.0),
+        "w, x, y, z": (scalar_first, "rotation", 1.0),
+        "named": (named, "orientation", 1.0),
+        "3 x 3": (matrices, "headMatrix", 1.0),
         "an angle": (list(YAW), "headYaw", -1.0),
     }
 
@@ -243,13 +250,11 @@ def test_percent_signs_in_cells(form, tmp_path):
             for value in values]  # fmt: skip
     names = ["jawOpen", "confidence", "cheekPuff"]
     path = tmp_path / "take"
-    comma = [[cell.replace(".", ",") for cell in row] for row in rows]
-    texts = [
-        "\n".join(",".join(row) for row in [names, *rows]),
-        "\n".join(";".join(row) for row in [names, *comma]),
-        json.dumps([dict(zip(names, row, strict=True)) for row in rows]),
-    ]
-    for text in texts:
+    with_commas = [[cell.replace(".", ",") for cell in row] for row in rows]
+    table = "\n".join(",".join(row) for row in [names, *rows])
+    table_with_commas = "\n".join(";".join(row) for row in [names, *with_commas])
+    document = json.dumps([dict(zip(names, row, strict=True)) for row in rows])
+    for text in (table, table_with_commas, document):
         path.write_text(text)
         take = read_take(path)
         assert take.channels["jawOpen"][-5:] == approx(values[-5:])

@@ -60,16 +60,15 @@ EASINGS = st.sampled_from(["linear", "smooth", "hold", "ease-in", "ease-out"])
 @st.composite
 def scripts(draw):
     """Scripts of poses, tracks, or both, with three controls and four seconds."""
-    poses = [
-        Pose(time, draw(st.dictionaries(st.sampled_from("abc"), SHARES)), draw(EASINGS))
-        for time in sorted(draw(st.sets(TIMES, max_size=4)))
-    ]
-    tracks = {
-        name: Channel.from_keys([Key(time, draw(SHARES), draw(EASINGS)) for time in sorted(times)])
-        for name, times in draw(
-            st.dictionaries(st.sampled_from("abc"), st.sets(TIMES, min_size=1, max_size=5))
-        ).items()
-    }
+    names = st.sampled_from("abc")
+    poses = []
+    for time in sorted(draw(st.sets(TIMES, max_size=4))):
+        poses.append(Pose(time, draw(st.dictionaries(names, SHARES)), draw(EASINGS)))
+    tracks = {}
+    times_by_name = draw(st.dictionaries(names, st.sets(TIMES, min_size=1, max_size=5)))
+    for name, times in times_by_name.items():
+        keys = [Key(time, draw(SHARES), draw(EASINGS)) for time in sorted(times)]
+        tracks[name] = Channel.from_keys(keys)
     return Script("drawn", 4.0, "drawn", poses=tuple(poses), tracks=tracks)
 
 

@@ -175,25 +175,22 @@ def _exported(suffix: str, marks: Any, folder: Path) -> HeadFiles:
 
 def head_inputs() -> list[OddHead]:
     """The whole table; names are unique."""
-    return [
-        *(OddHead(f"a {n}", partial(_mesh, n, c), is_) for n, (c, is_) in MESHES.items()),
-        *(OddHead(f"marks {n}", partial(_head, _obj, m), is_) for n, (m, is_) in MARKS.items()),
-        *(OddHead(f"head {n}", partial(_head, m, NUMBERS), is_) for n, (m, is_) in HEADS.items()),
-        *(
-            OddHead(f"{way} as {name}", partial(_at, make, name), says.format(kind=kind))
-            for way, (make, says) in WAYS.items()
-            for name, kind in (("h.obj", "mesh"), ("h.glb", "mesh"), ("head.json", "landmark"))
-        ),
-        *(
-            OddHead(f"called {n}", partial(_mesh, n, TRIANGLE), r"its name must end in \.obj, \.p")
-            for n in ("head", "head.obj.gz", "head.fbx", ".obj")
-        ),
-        *(
-            OddHead(f"called {name!r}", partial(_mesh, name, TRIANGLE), Kind.MESH)
-            for name in ("HEAD.OBJ", "t\xeate.obj", "two\nlines.obj")
-        ),
-        *(
-            OddHead(f"head.{suffix}", partial(_exported, suffix, marks), Kind.HEAD)
-            for suffix, marks in (("ply", NUMBERS), ("glb", NUMBERS), ("stl", POINTS))
-        ),
-    ]
+    table = []
+    for name, (content, expected) in MESHES.items():
+        table.append(OddHead(f"a {name}", partial(_mesh, name, content), expected))
+    for name, (marks, expected) in MARKS.items():
+        table.append(OddHead(f"marks {name}", partial(_head, _obj, marks), expected))
+    for name, (mesh, expected) in HEADS.items():
+        table.append(OddHead(f"head {name}", partial(_head, mesh, NUMBERS), expected))
+    for way, (make, message) in WAYS.items():
+        for name, kind in (("h.obj", "mesh"), ("h.glb", "mesh"), ("head.json", "landmark")):
+            expected = message.format(kind=kind)
+            table.append(OddHead(f"{way} as {name}", partial(_at, make, name), expected))
+    for name in ("head", "head.obj.gz", "head.fbx", ".obj"):
+        message = r"its name must end in \.obj, \.p"
+        table.append(OddHead(f"called {name}", partial(_mesh, name, TRIANGLE), message))
+    for name in ("HEAD.OBJ", "t\xeate.obj", "two\nlines.obj"):
+        table.append(OddHead(f"called {name!r}", partial(_mesh, name, TRIANGLE), Kind.MESH))
+    for suffix, marks in (("ply", NUMBERS), ("glb", NUMBERS), ("stl", POINTS)):
+        table.append(OddHead(f"head.{suffix}", partial(_exported, suffix, marks), Kind.HEAD))
+    return table

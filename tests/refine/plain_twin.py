@@ -229,10 +229,9 @@ def refine(
         edges = edge_names(face)
         if geomorph is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
             fan, centre = _fan(twin, face, count, grown)
-            least = (
-                min(grown.get(e, (0.0, 0.0))[0] for e in edges),
-                min(grown[e][1] if count[e] == 2 else 0.0 for e in edges),
-            )
+            once = [grown.get(e, (0.0, 0.0))[0] for e in edges]
+            twice = [grown[e][1] if count[e] == 2 else 0.0 for e in edges]
+            least = min(once), min(twice)
             before = twin.positions[centre], twin.normals[centre]
             twin.positions[centre], twin.normals[centre] = rules.centre(source, *before, least)
             twin.triangles += [(source, corners) for corners in fan]
@@ -339,19 +338,18 @@ def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
     first, second, third = sorted(range(3), key=lambda i: -grown[i])
     shared = next(i for i in range(3) if {first, second} == {i, (i + 2) % 3})
     centroid = [1 / 3] * 3
+    first_edge = [2 / 3 * (i == first) for i in range(3)]
+    beside_shared = [1 / 2 if i == shared else 1 / 4 for i in range(3)]
+    two_edges = [1 / 2 * (i != third) for i in range(3)]
+    # The share of each rule, its weights of corners, and those of edges.
     rules = [
         (1 - grown[first], centroid, [2 / 3] * 3),
-        (grown[first] - grown[second], centroid, [2 / 3 * (i == first) for i in range(3)]),
-        (
-            grown[second] - grown[third],
-            [1 / 2 if i == shared else 1 / 4 for i in range(3)],
-            [1 / 2 * (i != third) for i in range(3)],
-        ),
+        (grown[first] - grown[second], centroid, first_edge),
+        (grown[second] - grown[third], beside_shared, two_edges),
         (grown[third], centroid, [4 / 9] * 3),
     ]
-    corners, edges = (
-        [sum(rule[0] * rule[k][i] for rule in rules) for i in range(3)] for k in (1, 2)
-    )
+    corners = [sum(share * of_corners[i] for share, of_corners, _ in rules) for i in range(3)]
+    edges = [sum(share * of_edges[i] for share, _, of_edges in rules) for i in range(3)]
     return corners, edges
 
 
@@ -370,7 +368,7 @@ def _subtriangles(
     if not is_proper(face):
         return [starting_at_least([("vertex", v) for v in face])]
     turned = [face[k:] + face[:k] for k in range(3)]
-    kinds = [tuple(count[edge_name(f[i], f[(i + 1) % 3])] for i in range(3)) for f in turned]
+    kinds = [tuple(count[edge] for edge in edge_names(each)) for each in turned]
     k = next(k for k in range(3) if kinds[k] in PATTERNS)
     corner = turned[k]
     points: dict[str, Name] = {str(i): ("vertex", corner[i]) for i in range(3)}
