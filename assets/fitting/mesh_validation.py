@@ -247,8 +247,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     least_bag_depth = 15.0  # [mm]
     if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
         return skin
-    rim_depth = 4.0  # [mm] of the bag that stay behind the lips
-    is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > rim_depth
+    is_behind &= ~rim_behind(skin, is_edge, is_behind)
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
     return replace(
@@ -257,6 +256,41 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
         file_faces=skin.file_faces[left[part.file_faces]],
         is_turned=skin.is_turned,
     )
+
+
+def rim_behind(skin: SkinPiece, is_edge: Flags, is_behind: Flags) -> Flags:
+    """Return flags of the part of a bag that stays behind the lips, (V,).
+
+    A rim of equal depth ends as saw teeth, which show from the side when lips are rounded. A rim of
+    whole rows of vertices ends along edges of a regular mesh. The rim with the shorter border is
+    the smoother one.
+
+    is_edge: whether a vertex lies on the inner edge of the lips, (V,). is_behind: whether it
+    belongs to the bag, (V,).
+    """
+    rim_depth = 4.0  # [mm]
+    depth = scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0]
+    faces = skin.faces[(is_edge | is_behind)[skin.faces].all(axis=1)]
+    rows = np.zeros(len(skin.vertices), np.bool_)
+    row = is_edge
+    reached = 0.0  # [mm] mean depth of the last row; that of the rim's last row is nearest to 4 mm
+    while True:
+        beside = np.isin(np.arange(len(rows)), faces[row[faces].any(axis=1)])
+        row = beside & is_behind & ~rows
+        if not row.any() or abs(depth[row].mean() - rim_depth) > abs(reached - rim_depth):
+            break
+        rows |= row
+        reached = float(depth[row].mean())
+    rims = rows, is_behind & (depth <= rim_depth)
+    return min(rims, key=lambda rim: _border_length(skin, is_behind & ~rim))
+
+
+def _border_length(skin: SkinPiece, is_removed: Flags) -> float:
+    """Return the length of the borders of a skin [mm] without some of its vertices, (V,)."""
+    sides = np.sort(sides_of(skin.faces[~is_removed[skin.faces].any(axis=1)]), axis=1)
+    sides, uses = np.unique(sides, axis=0, return_counts=True)
+    ends = skin.vertices[sides[uses == 1]]
+    return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
 
 
 def is_covered(corners: Floats64, point: Floats64) -> bool:

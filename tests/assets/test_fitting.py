@@ -14,9 +14,10 @@ from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.landmark_file import MisfitError
+from risorius.assets.fitting.mesh_validation import SkinPiece, rim_behind
 from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import boundary_loops
+from risorius.assets.topology import boundary_loops, grid_faces
 from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.assets.checks import edge_faces
@@ -423,3 +424,19 @@ def test_a_pouch_behind_the_lips_is_removed():
     assert len(other.mesh.vertices) not in head.file_vertices
     assert len(head.faces) > 0.95 * len(other.mesh.faces)
     assert np.array_equal(head.file_vertices[head.landmarks], other.landmarks)
+
+
+def test_the_rim_of_a_pouch_ends_along_a_row_of_vertices():
+    """What stays of a pouch behind the lips is whole rows of a regular mesh, without saw teeth."""
+    columns = 20
+    depths = np.array([0.0, 2.0, 4.0, 7.0, 12.0])  # [mm] of the rows behind the lips' edge
+    depth, across = np.meshgrid(depths, np.linspace(-20.0, 20.0, columns), indexing="ij")
+    wave = 0.5 * (-1.0) ** np.arange(columns)  # every second vertex of a row lies deeper
+    ahead = -depth - wave * (depth == depths[2])
+    vertices = np.stack([across, np.zeros_like(across), ahead], axis=2).reshape(-1, 3)
+    faces = grid_faces(np.arange(len(vertices)).reshape(len(depths), columns))
+    none = np.zeros(0, np.int32)
+    skin = SkinPiece(vertices, faces, none, none, none)
+    row = np.repeat(np.arange(len(depths)), columns)
+    rim = rim_behind(skin, row == 0, row > 0)
+    assert np.array_equal(rim, (row == 1) | (row == 2))
