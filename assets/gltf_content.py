@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .user_files import MOST_VERTICES, beside, named, read_file, text_with_names
+from .user_files import MOST_VERTICES, named, path_beside, read_file, text_with_names
 
 COMPONENT_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 DRACO = "KHR_draco_mesh_compression"
@@ -55,7 +55,7 @@ def content_of(uri: str, folder: Path, kind: str) -> bytes:
         plain = unquote_to_bytes(data)
         return base64.b64decode(plain) if head.endswith(";base64") else plain
     name = text_with_names(unquote_to_bytes(uri)).decode()
-    path = beside(folder, name)
+    path = path_beside(folder, name)
     try:
         return read_file(path, kind=kind, most=MOST_MEGABYTES)
     except AssetError as error:

@@ -259,25 +259,25 @@ class Head:
             for name, row in rows.items()
         }
 
-    def beside(self, ending: str) -> Path:
+    def file_beside(self, ending: str) -> Path:
         """Return the path of a file beside the head's data file; ending: the end of its name."""
         return self.file.with_name(self.file.stem + ending)
 
     @cached_property
     def albedo(self) -> Image:
         """The colour of the skin, sRGB, shape (H, W, 3), uint8; row 0 is v = 1."""
-        return read_image(self.beside(".png"))
+        return read_image(self.file_beside(".png"))
 
     @cached_property
     def wrinkles(self) -> Wrinkles:
         """The wrinkles of the skin; arrays are read-only."""
-        arrays = read_arrays(self.beside("_wrinkles.npz"))
+        arrays = read_arrays(self.file_beside("_wrinkles.npz"))
         return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
     @cached_property
     def segments(self) -> Image:
         """The segment of each texel, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1."""
-        return read_image(self.beside("_segments.png"), mode="L")
+        return read_image(self.file_beside("_segments.png"), mode="L")
 
     @cached_property
     def ambient_occlusion(self) -> Image:
@@ -285,7 +285,7 @@ class Head:
 
         Its texels are those of `albedo`.
         """
-        occlusion = read_arrays(self.beside("_ambient_occlusion.npz"))["ambient_occlusion"]
+        occlusion = read_arrays(self.file_beside("_ambient_occlusion.npz"))["ambient_occlusion"]
         rims = [self.uv[self.rings[f"nostril_{side}"]] for side in ("left", "right")]
         return lit_nostrils(occlusion, rims)
 
@@ -297,7 +297,7 @@ class Head:
         (`geometry.gradients`). On the neck they were solved, texel by texel by least squares, so
         that the drawn normal is the interpolated normal smoothed over 3.5 mm of skin.
         """
-        arrays = read_arrays(self.beside("_fine_shape.npz"))
+        arrays = read_arrays(self.file_beside("_fine_shape.npz"))
         slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps compress better
         slopes.flags.writeable = False
         return FineShape(slopes, float(arrays["steepest"]))
@@ -312,7 +312,7 @@ class Head:
             raise ValueError(
                 f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
             )
-        arrays = read_arrays(self.beside("_finer.npz"))
+        arrays = read_arrays(self.file_beside("_finer.npz"))
         faces = self.faces
         count = len(self.vertices)
         edges = []

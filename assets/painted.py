@@ -15,7 +15,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers64
 from .meshes import Mesh, read_mesh
 from .pictures import libraries_of, material_key
-from .user_files import MOST_VERTICES, beside, read_file
+from .user_files import MOST_VERTICES, path_beside, read_file
 from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of, read_obj
 
 
@@ -95,7 +95,7 @@ def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
     looks: dict[str, MaterialLook] = {}
     pictures: dict[str, Any] = {}
     for name in libraries_of(surface.libraries, folder):
-        library = beside(folder, name)
+        library = path_beside(folder, name)
         if library.exists():
             content = read_file(library, kind="material", most=1)
             looks.update(looks_of(content))
@@ -106,7 +106,7 @@ def _materials(surface: ObjSurface, folder: Path) -> list[Material]:
         look = looks.get(material_key(name, looks), MaterialLook())
         picture = None
         if painted is not None:
-            path = beside(folder, painted.name)
+            path = path_beside(folder, painted.name)
             if path.exists():
                 picture = (read_file(path, kind="picture", most=100), path.name)
         placing = Placing() if painted is None else painted.placing

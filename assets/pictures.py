@@ -22,7 +22,7 @@ from ..geometry.arrays import Floats32, Integers32, Integers64
 from ..geometry.colour import to_linear, to_screen
 from .data_files import Image
 from .errors import AssetError
-from .user_files import beside, named, read_file
+from .user_files import named, path_beside, read_file
 from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
 LARGEST_SIDE = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
@@ -53,7 +53,7 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
     by_material: dict[str, MaterialPicture] = {}
     missing = []
     for name in libraries_of(surface.libraries, folder):
-        library = beside(folder, name)
+        library = path_beside(folder, name)
         if library.exists():
             by_material.update(pictures_of(read_file(library, kind="material", most=1)))
         else:
@@ -100,15 +100,15 @@ def libraries_of(lines: Sequence[str], folder: Path) -> list[str]:
     found = []
     for line in lines:
         names = line.partition(" #")[0].split()
-        are_there = not beside(folder, line).exists() and any(
-            beside(folder, name).exists() for name in names
+        are_there = not path_beside(folder, line).exists() and any(
+            path_beside(folder, name).exists() for name in names
         )
         found += names if are_there else [line]
     return found
 
 
 def _read_picture(folder: Path, name: str) -> Image:
-    path = beside(folder, name)
+    path = path_beside(folder, name)
     try:
         most_megabytes = 100
         content = read_file(path, kind="picture", most=most_megabytes)

@@ -28,7 +28,7 @@ def named(path: str | Path) -> str:
     return text if text.isprintable() else ascii(text)[1:-1]
 
 
-def beside(folder: Path, name: str) -> Path:
+def path_beside(folder: Path, name: str) -> Path:
     """The path of a file in a folder; raises AssetError for a name that leads out of the folder.
 
     Letters with marks may be written in two ways (NFC, NFD); the folder's way is used.

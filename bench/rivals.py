@@ -67,7 +67,7 @@ class Row(NamedTuple):
 
 
 class _Frame:
-    """Our refiner as a rival's frame: refines positions, returns positions and triangles."""
+    """A frame of our refiner, called like a rival's: positions in, positions and triangles out."""
 
     def __init__(self, refiner: refine.Refiner, criterion: refine.Displacement | None) -> None:
         self._refiner = refiner

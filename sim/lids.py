@@ -1,4 +1,4 @@
-"""Eyelids: they turn over the eyeball like a visor, meet when closed, and ride with the gaze.
+"""Eyelids: they turn over the eyeball like a visor, meet when closed, and follow the gaze.
 
 Each lid vertex turns about the axis through the centre of the eyeball that runs from corner to
 corner of the eye. Angles are measured per column of the eye opening (between its corners). Each

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..files import check_file
 from ..motion import scene_of
-from ..passes.labels import beside, check_wanted, save_labelled
+from ..passes.labels import check_wanted, files_beside, save_labelled
 from ..pictures import Image, check_png, save_png
 from ..script import Script
 from ..sound.decoding import load_sound
@@ -176,7 +176,7 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
     if options.beside:
         raise UserError("--passes and --compare exclude each other; leave one of them out")
     if _is_image(output):
-        for path in beside(output):
+        for path in files_beside(output):
             check_file(path)
 
 

@@ -190,9 +190,11 @@ def capture(
     from ..capture import capture as film_of
     from ..capture.outputs import WITH_SOUND
     from ..files import check_apart
-    from ..passes.labels import beside
+    from ..passes.labels import files_beside
 
-    written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
+    written = [output, sheet]
+    if output and filming.passes is not None:
+        written += files_beside(output)
     check_apart(written, (script, sound, drawing.light, *drawing.files))
     if sound is not None and (output is None or output.suffix.lower() not in WITH_SOUND):
         raise UserError(

@@ -124,11 +124,12 @@ def record(
         uv=scene.skin.uv,
         face_uv=scene.skin.face_uv,
     )
+    parts = [_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True)]
     return Clip(
         scene,
         script,
         frames_per_second,
-        (skin, *(_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True))),
+        (skin, *parts),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
         dict(zip(moved.lowest if moved else (), np.stack(activations, axis=1), strict=True)),

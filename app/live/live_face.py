@@ -150,10 +150,10 @@ class LiveFace(Receiver):
     def _end_calibration(self) -> None:
         """Take the median of each channel as neutral; a blink does not change a median."""
         if self._neutral:
-            median = {
-                name: float(np.median([each[name] for each in self._neutral if name in each]))
-                for name in self._neutral[-1]
-            }
+            median = {}
+            for name in self._neutral[-1]:
+                values = [each[name] for each in self._neutral if name in each]
+                median[name] = float(np.median(values))
             self.calibration = replace(self.calibration, neutral=neutral_now(median))
         self._neutral = []
         self._neutral_until = None

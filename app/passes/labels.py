@@ -127,7 +127,7 @@ NO_TRIANGLE = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is rea
 FILE_ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 
-def beside(picture: Path) -> list[Path]:
+def files_beside(picture: Path) -> list[Path]:
     """Return the paths of files that may be written beside a picture, in the order of FILE_ENDS."""
     return [picture.with_name(picture.stem + end) for end in FILE_ENDS]
 
@@ -144,7 +144,7 @@ class Labelled:
 
     def save(self, picture: Path) -> None:
         """Write the files that belong beside `picture`; raises OSError if one cannot be written."""
-        exr, classes, landmarks, labels = beside(picture)
+        exr, classes, landmarks, labels = files_beside(picture)
         floats = {name: image for name, image in self.images.items() if name in CHANNELS}
         if floats:
             write_exr(exr, floats)

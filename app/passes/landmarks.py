@@ -101,7 +101,7 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
             farthest = distances.argmax(axis=1)
             line = _smoothed(paths[side, np.arange(len(farthest)), farthest])
             outward = _normals(camera.project(line), outward)
-        line = _below(line, line @ head_axes[:, 1], float(corner_heights[side]))
+        line = _part_below(line, line @ head_axes[:, 1], float(corner_heights[side]))
         halves.append(_spread(line, camera.project(line), JAW_COUNT // 2 + 1))
     right, left = halves
     return np.vstack([right, left[-2::-1]])
@@ -123,7 +123,7 @@ def _smoothed(points: Floats64) -> Floats64:
     return line
 
 
-def _below(points: Floats64, heights: Floats64, top: float) -> Floats64:
+def _part_below(points: Floats64, heights: Floats64, top: float) -> Floats64:
     """Return the part of a line, (n, 3), below a height; all of it if it begins below."""
     first = int((heights < top).argmax())
     if first == 0:

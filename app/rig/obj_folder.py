@@ -18,7 +18,7 @@ import numpy as np
 
 from risorius.assets.errors import AssetError
 from risorius.assets.fitting.lips import LipCut
-from risorius.assets.user_files import beside, read_file, text_with_names
+from risorius.assets.user_files import path_beside, read_file, text_with_names
 from risorius.assets.wavefront import joined_lines, maps_of
 from risorius.geometry.arrays import Floats64
 
@@ -88,13 +88,13 @@ def _copy_materials(file: FileHead, folder: Path, *, is_kept: bool) -> None:
     assert file.painted is not None
     source = file.path.parent
     for name in file.painted.libraries:
-        if not beside(source, name).exists():
+        if not path_beside(source, name).exists():
             continue
-        library = read_file(beside(source, name), kind="material", most=1)
+        library = read_file(path_beside(source, name), kind="material", most=1)
         _write_beside(folder, name, library if is_kept else text_with_names(library))
         for picture in maps_of(library):
             with contextlib.suppress(AssetError):
-                content = read_file(beside(source, picture), kind="picture", most=100)
+                content = read_file(path_beside(source, picture), kind="picture", most=100)
                 _write_beside(folder, picture, content)
 
 

@@ -138,7 +138,7 @@ class Channel:
 
     def raised(self, chosen: Flags, amount: float, low: float, high: float) -> Channel:
         """Return the channel with chosen keys raised, within limits; chosen: flags, shape (K,)."""
-        higher = within(self.values, amount, low, high)
+        higher = raised_within(self.values, amount, low, high)
         return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
 
     def values_at(self, times: Floats64) -> Floats64:
@@ -187,9 +187,10 @@ class Pose(Record):
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
         """Return the pose with some values raised, within their limits."""
-        higher = {
-            name: float(within(self.values.get(name, 0.0), amount, *limits[name])) for name in names
-        }
+        higher = {}
+        for name in names:
+            value = self.values.get(name, 0.0)
+            higher[name] = float(raised_within(value, amount, *limits[name]))
         new = {name: value for name, value in higher.items() if value or name in self.values}
         return replace(self, values={**self.values, **new})
 
@@ -319,7 +320,7 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
     return after - 1, after, (time - previous) / (following - previous)
 
 
-def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats64:
+def raised_within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats64:
     """Raise values by an amount within limits; values beyond the limits may stay there."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))

@@ -70,11 +70,8 @@ class KeySet(Set[KeyId]):
     def nearest(self, time: float, reach: float) -> KeySet:
         """Return the keys at the key time nearest to `time`, if it is within `reach` [s]."""
         around = self.between(time - reach, time + reach).times
-        nearest = min(
-            (float(each[np.abs(each - time).argmin()]) for each in around.values()),
-            key=lambda each: abs(each - time),
-            default=time,
-        )
+        times = [float(each[np.abs(each - time).argmin()]) for each in around.values()]
+        nearest = min(times, key=lambda each: abs(each - time), default=time)
         return self.between(nearest, nearest)
 
     def between(self, first: float, last: float) -> KeySet:

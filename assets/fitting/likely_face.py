@@ -49,7 +49,7 @@ class LikelyFace:
     skin: Integers32
 
     def __post_init__(self) -> None:
-        modes = read_arrays(self.head.beside("_modes.npz"))["modes"]
+        modes = read_arrays(self.head.file_beside("_modes.npz"))["modes"]
         self._modes = modes.astype(np.float64)
         self._weights = np.zeros(len(self._modes))
         self.moved = Similarity(1.0, np.eye(3), np.zeros(3))

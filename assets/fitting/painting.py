@@ -55,7 +55,7 @@ def spread_uv(
     trust = 1.0 / (1.0 + (away / trusted_within) ** 2)
     least_cosine = 0.3  # between the normals of a vertex and its foot
     trust[(across * normals).sum(axis=1) < least_cosine] = 0.0
-    is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
+    is_folded = read_arrays(known.file_beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
     trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
     # Necks and shoulders below the built-in head have their feet on its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
@@ -125,7 +125,7 @@ def plain_skin(known: Head) -> tuple[Image, Image]:
     Ears and nostrils of another head lie elsewhere; its shape and the light show them. The package
     has both textures as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
     """
-    drawn = read_arrays(known.beside("_plain.npz"))
+    drawn = read_arrays(known.file_beside("_plain.npz"))
     picture = known.albedo.copy()
     light = known.ambient_occlusion.copy()
     picture[drawn["is_drawn"]] = drawn["colours"]
@@ -151,7 +151,7 @@ def own_skin(known: Head, skin: SkinPiece) -> tuple[Image, Image]:
 
 def _without_lash_roots(known: Head, picture: Image) -> Image:
     """Replace the dark lines of lashes' roots in the built-in texture by the skin around."""
-    roots = read_image(known.beside("_lids.png"), mode="L") / 255.0
+    roots = read_image(known.file_beside("_lids.png"), mode="L") / 255.0
     size = 5.0  # [texels] of the Gaussian that fills the lines
     low, high = np.flatnonzero(roots.any(axis=1))[[0, -1]] + [-30, 30]
     share = np.minimum(5.0 * roots[low:high, :, None], 1.0)

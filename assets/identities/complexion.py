@@ -303,7 +303,7 @@ def _with_hair(
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:
     """Make standing hair for the built-in head, whose texture shows cropped hair there."""
-    scalp_map = read_arrays(head.beside("_tints.npz"))["scalp"]
+    scalp_map = read_arrays(head.file_beside("_tints.npz"))["scalp"]
     behind = np.float32(0.01 * SCALP_SCALE) * scalp_map - SCALP_OFFSET
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
     colour = to_screen(LOCKS_LIGHTER * to_linear(np.array(SHIPPED_COMPLEXION.hair)))
@@ -330,7 +330,7 @@ def _tints() -> _Tints:
     from PIL import Image as Pictures
 
     head = load("head")
-    arrays = read_arrays(head.beside("_tints.npz"))
+    arrays = read_arrays(head.file_beside("_tints.npz"))
     height, width = head.albedo.shape[:2]
     soft = {}
     for name in ("melanin", "blood", "lips", "beard", "brow", "scalp"):
@@ -362,7 +362,7 @@ def _tints() -> _Tints:
         np.ascontiguousarray(np.moveaxis(bare, 2, 0)),
         **soft,
         hair=hair,
-        lids=np.asarray(read_image(head.beside("_lids.png"), mode="L") / 255.0, np.float32),
+        lids=np.asarray(read_image(head.file_beside("_lids.png"), mode="L") / 255.0, np.float32),
         detail=detail,
         skin=arrays["skin"],
         melanins=melanins,

@@ -76,7 +76,7 @@ def with_irises(
     """
     if name not in IRIS_FREQUENCIES:
         raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_FREQUENCIES)}")
-    painted = read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0)
+    painted = read_arrays(load("head").file_beside("_eyes.npz"))[name] / np.float32(255.0)
     found = {}
     for eye, colours in zip(eyes, painted, strict=True):
         part = _eyeball(parts, eye)

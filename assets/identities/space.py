@@ -210,7 +210,7 @@ class PersonSpace:
 def person_space() -> PersonSpace:
     """Read the model of faces around the mean of people from the data of the package."""
     head = load("head")
-    arrays = read_arrays(head.beside("_modes.npz"))
+    arrays = read_arrays(head.file_beside("_modes.npz"))
     modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))
     mean = head.vertices - np.tensordot(own, modes, 1)
     sides = [

@@ -27,7 +27,7 @@ from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import OwnStream, StreamArrays
-from ..mesh.threads import beside
+from ..mesh.threads import start_beside
 from .criterion import Criterion, NormalDrop
 from .cutting import Cutting
 from .frame import buffers_for
@@ -140,7 +140,7 @@ class Kahler(BaseRefiner):
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self._reserve_rows(stream, vertex_count, triangle_count)
-        look_up = beside(lambda: self._look_up(out.triangles, out.source), triangle_count)
+        look_up = start_beside(lambda: self._look_up(out.triangles, out.source), triangle_count)
         try:
             self._place(out.vertices)
         finally:

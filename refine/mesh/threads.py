@@ -49,7 +49,7 @@ def parallel_for(kernel: Callable[..., object], count: int, *arguments: object) 
                 other.result()
 
 
-def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
+def start_beside(task: Callable[[], object], count: int) -> Callable[[], object]:
     """Start a task in another thread if `count` is large; return a function that completes it."""
     if threads_for(count) == 1:
         return task

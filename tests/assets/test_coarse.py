@@ -71,7 +71,7 @@ def test_roots_of_lashes_lie_below_the_edge_of_the_lid(coarse, head):
 
     Otherwise a shut lid would have a dark hook at its outer corner.
     """
-    roots = read_image(head.beside("_lids.png"), mode="L") / 255.0
+    roots = read_image(head.file_beside("_lids.png"), mode="L") / 255.0
     in_front = (384, int(head.mirror[384]))  # on the front of each lid, above its outer corner
     is_front = np.isin(coarse.file_vertices[coarse.faces], in_front).any(axis=1)
     steps = np.linspace(0.0, 1.0, 30)

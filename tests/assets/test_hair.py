@@ -89,7 +89,7 @@ def test_hair_is_as_long_and_begins_where_it_is_set():
 
 def test_sideburns_reach_the_ears(head):
     """Hair stands as densely beside the root of an ear as in the sideburn; 0.35 of 0.6 once."""
-    scalp = read_arrays(head.beside("_tints.npz"))["scalp"]
+    scalp = read_arrays(head.file_beside("_tints.npz"))["scalp"]
     for side in (scalp, scalp[:, ::-1]):
         assert side[152:159, 259].min() > 50
 

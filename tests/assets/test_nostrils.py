@@ -11,7 +11,7 @@ def test_nostrils_are_not_black(head):
     Elsewhere the map is unchanged.
     """
     lit = head.ambient_occlusion.astype(int)
-    given = read_arrays(head.beside("_ambient_occlusion.npz"))["ambient_occlusion"].astype(int)
+    given = read_arrays(head.file_beside("_ambient_occlusion.npz"))["ambient_occlusion"].astype(int)
     size = len(lit)
     for side in ("left", "right"):
         u, v = head.uv[head.anatomy[f"nostril_roof_{side}"]]

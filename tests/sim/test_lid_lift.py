@@ -106,7 +106,7 @@ def test_shut_lids_of_a_large_coarse_eye_are_no_tents(head, tmp_path):
     numbers = cKDTree(points).query(vertices[head.landmarks])[1]
     mesh, marked = UserHead(Mesh(points, faces), numbers).write(tmp_path)
     fitted = fit_head(mesh, marked)
-    roots = read_image(head.beside("_lids.png"), mode="L") > 128
+    roots = read_image(head.file_beside("_lids.png"), mode="L") > 128
     assert fitted.albedo[roots].mean() > head.albedo[roots].mean() + 30.0
     lids = build_face_model(fitted).lids.vertices
     assert lids.sink.min() > -2.6

@@ -184,13 +184,13 @@ class FileDrop:
             raise UserError(str(error)) from None
         show_first = show or self._read(mesh, landmarks)
 
-        def go_on() -> Message:
+        def show_all() -> Message:
             """Show the head first, then play the script, pose or recording on it."""
             line = show_first() or (f"{mesh.name}: opened" if remark else complaint)
             self._scripts.note_recent(*filter(None, (mesh, landmarks)))
             return self._play(others, remark) or line
 
-        return go_on
+        return show_all
 
     def _play(self, found: Mapping[str, Path], remark: str = "") -> Message:
         line = self._scripts.open(found["script"], remark) if "script" in found else None
@@ -199,21 +199,23 @@ class FileDrop:
     def ask_light(self) -> None:
         """Ask for a light map, and light the scene by it."""
 
-        def go_on(path: Path) -> Message:
+        def open_map(path: Path) -> Message:
             """Open the map."""
             return self.open([str(path)])
 
-        self._files.open("Open light map", go_on, saving=False, suffixes=LIGHT_SUFFIXES)
+        self._files.open("Open light map", open_map, saving=False, suffixes=LIGHT_SUFFIXES)
 
     def ask_head(self) -> None:
         """Ask for a mesh; show it with the landmark file beside it, or else open its marking."""
 
-        def go_on(mesh: Path) -> Message:
+        def open_mesh(mesh: Path) -> Message:
             """Open the mesh, with a landmark file of the same name if there is one."""
-            own = (
-                mesh.with_suffix(end) for end in (LANDMARKS_SUFFIX, f".landmarks{LANDMARKS_SUFFIX}")
-            )
-            landmarks = next((path for path in own if path.is_file()), None)
-            return self.open([str(path) for path in (mesh, landmarks) if path is not None])
+            files = [mesh]
+            for suffix in (LANDMARKS_SUFFIX, f".landmarks{LANDMARKS_SUFFIX}"):
+                landmarks = mesh.with_suffix(suffix)
+                if landmarks.is_file():
+                    files.append(landmarks)
+                    break
+            return self.open([str(file) for file in files])
 
-        self._files.open("Open head", go_on, saving=False, suffixes=MESH_SUFFIXES)
+        self._files.open("Open head", open_mesh, saving=False, suffixes=MESH_SUFFIXES)
