@@ -9,8 +9,9 @@ new search in each frame would make bands jump from one lip to the other.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -48,6 +49,22 @@ NEIGHBOUR_COUNT = 8  # number of vertices that determine the place of the skin
 LANDMARKS_AROUND = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}
 
 
+class _Band(NamedTuple):
+    """A band at rest, before it is placed between skin and bone.
+
+    line: its middle line [mm], (ROW_COUNT, 3). width: [mm], (ROW_COUNT,). controls: names of the
+    controls that contract it. name, fibre: the linear muscle, and the number of its fibre. bone:
+    the bone of a linear muscle's origin.
+    """
+
+    line: Floats64
+    width: Floats64
+    controls: list[str]
+    name: str = ""
+    fibre: int = 0
+    bone: str = "cranium"
+
+
 @dataclass(eq=False)
 class Muscles:
     """All bands of a face as one part that changes its shape (see render/parts.py).
@@ -80,49 +97,20 @@ class Muscles:
         simulation = face.simulation.clone()
         simulation.reset()
         marks = face.rest_positions[face.head.landmarks]
-        self.names: list[tuple[str, int]] = []  # names of linear muscles, and numbers of fibres
-        widths = list[Floats64]()
-        lines = list[Floats64]()
-        bones = list[str]()
-        for name, fibres in simulation.anatomy.fibres().items():
-            stem = name.removesuffix("_left").removesuffix("_right")
-            row = face.head.rig["muscle"].get(stem, {})
-            if name.startswith("platysma"):  # it lies on structures that are not drawn
-                continue
-            for number, (fibre, line) in enumerate(zip(row.get("fibre", ()), fibres, strict=False)):
-                visible = _before_mouth(_resampled(line[None])[0], marks)
-                if visible is None:
-                    continue
-                self.names.append((name, number))
-                # Muscle takes half of the rig's width. Bands are 4 to 17 mm wide.
-                width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
-                widths.append(np.clip(width, 4.0, 17.0) * WIDTH_PROFILE)
-                lines.append(visible)
-                bones.append(row.get("bone", "cranium"))
-        self._is_mandible = np.array([bone == "mandible" for bone in bones])
-        rings = list[Floats64]()
-        # The controls that move each band.
-        self._controls: list[list[str]] = [[name] for name, _ in self.names]
-        for start, end, numbers, bands in SPHINCTERS:
-            edge = _resampled(marks[None, list(numbers)])[0]
-            red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROW_COUNT, np.inf)
-            middle = marks[LANDMARKS_AROUND[end]].mean(axis=0)
-            away = unit_vectors((edge - middle) * (1.0, 1.0, 0.0))
-            names = simulation.controls.sums
-            own = [name for name in names if name.startswith(start) and name.endswith(end)]
-            for outward, width in bands:
-                rings.append(edge + outward * away)
-                widths.append(np.minimum(width * WIDTH_PROFILE, 2.0 * (outward + 0.06 * red**2)))
-                self._controls.append(own)
-        self._width = np.array(widths)
+        linear = _linear_bands(face.head.rig, simulation.anatomy.fibres(), marks)
+        rings = _ring_bands(marks, simulation.controls.sums)
+        self.names = [(band.name, band.fibre) for band in linear]
+        self._is_mandible = np.array([band.bone == "mandible" for band in linear])
+        self._controls = [band.controls for band in (*linear, *rings)]
+        self._width = np.array([band.width for band in (*linear, *rings)])
         looks_from = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
         bone_depth = np.asarray(face.simulated_head.bone_depth)
         skin = _Skin(simulation.rest_positions, simulation.faces, bone_depth, looks_from)
-        ring_lines = np.array(rings)
+        ring_lines = np.array([band.line for band in rings])
         for _ in range(4):
             outside, normal, _ = skin.at(ring_lines)
             ring_lines -= outside[..., None] * normal
-        self._place(skin, np.array([*lines, *ring_lines]))
+        self._place(skin, np.array([*(band.line for band in linear), *ring_lines]))
         self._length = _lengths(self._rest[1])
         self._lay_out()
 
@@ -318,6 +306,46 @@ class _Skin:
         rows = np.repeat(np.arange(alone.size), near.shape[-1])
         place = rows, near.ravel()
         return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, len(self.x))).tocsr()
+
+
+def _linear_bands(
+    rig: Mapping[str, Any], fibres_of: Mapping[str, Sequence[Floats64]], marks: Floats64
+) -> list[_Band]:
+    """Return a band for each visible fibre of the linear muscles.
+
+    fibres_of: fibres at rest by muscle, polylines [mm]. marks: landmarks, (68, 3).
+    """
+    bands = []
+    for name, fibres in fibres_of.items():
+        stem = name.removesuffix("_left").removesuffix("_right")
+        row = rig["muscle"].get(stem, {})
+        if name.startswith("platysma"):  # it lies on structures that are not drawn
+            continue
+        for number, (fibre, line) in enumerate(zip(row.get("fibre", ()), fibres, strict=False)):
+            visible = _before_mouth(_resampled(line[None])[0], marks)
+            if visible is None:
+                continue
+            # Muscle takes half of the rig's width. Bands are 4 to 17 mm wide.
+            width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
+            profile = np.clip(width, 4.0, 17.0) * WIDTH_PROFILE
+            bone = row.get("bone", "cranium")
+            bands.append(_Band(visible, profile, [name], name, number, bone))
+    return bands
+
+
+def _ring_bands(marks: Floats64, names: Iterable[str]) -> list[_Band]:
+    """Return the bands of sphincters around eyes and mouth; names: names of all lowest controls."""
+    rings = []
+    for start, end, numbers, bands in SPHINCTERS:
+        edge = _resampled(marks[None, list(numbers)])[0]
+        red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROW_COUNT, np.inf)
+        middle = marks[LANDMARKS_AROUND[end]].mean(axis=0)
+        away = unit_vectors((edge - middle) * (1.0, 1.0, 0.0))
+        controls = [name for name in names if name.startswith(start) and name.endswith(end)]
+        for outward, width in bands:
+            profile = np.minimum(width * WIDTH_PROFILE, 2.0 * (outward + 0.06 * red**2))
+            rings.append(_Band(edge + outward * away, profile, controls))
+    return rings
 
 
 def _sections(rails: Floats64, normal: Floats64, thick: Floats64) -> Floats64:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -77,9 +78,19 @@ def make_person(identity: Identity) -> Person:
     return _make_head(identity.scaled(factors[-1]))
 
 
-def _make_head(identity: Identity) -> Person:
-    """Make the head of an identity; if its skin turns over or intersects, raises AssetError."""
-    known = load("head")
+class _Form(NamedTuple):
+    """The form of a person.
+
+    vertices: the skin [mm], (V, 3), read only. eyes: the eyeballs. chin: the menton [mm], (3,).
+    """
+
+    vertices: Floats64
+    eyes: tuple[Eye, ...]
+    chin: Floats64
+
+
+def _form_of(known: Head, identity: Identity) -> _Form:
+    """Shape the skin of an identity; raises AssetError if it turns over or intersects itself."""
     space = person_space()
     beside = known.vertices[:, :1]
     middle_width = 20.0  # [mm] beside the midline, over which the unevenness changes its sign
@@ -89,14 +100,21 @@ def _make_head(identity: Identity) -> Person:
     bent = without_ridges(_resting_face(known, bent, eyes, identity))
     lid_fractions = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
     vertices = lids_on_eyes(known, bent, eyes, lid_fractions)
-    neck = vertices[known.anatomy["menton"]], identity.sex
-    vertices = _on_neck(vertices, *neck)
+    chin = vertices[known.anatomy["menton"]]
+    vertices = _on_neck(vertices, chin, identity.sex)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError(
             "these weights make no face: a triangle of skin is turned over, or intersects another"
         )
     vertices.flags.writeable = False
+    return _Form(vertices, eyes, chin)
+
+
+def _make_head(identity: Identity) -> Person:
+    """Make the head of an identity; if its skin turns over or intersects, raises AssetError."""
+    known = load("head")
+    vertices, eyes, chin = _form_of(known, identity)
     named = _named(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
     larger = float(np.sqrt(spread / usual))
@@ -110,7 +128,7 @@ def _make_head(identity: Identity) -> Person:
     parts = []
     for part in place_parts(known, skin, warp, eyes, jaws, kept_bone="neck"):
         if part.bone == "neck":
-            moved = _on_neck(part.vertices.astype(float), *neck)
+            moved = _on_neck(part.vertices.astype(float), chin, identity.sex)
             part = replace(part, vertices=moved.astype(np.float32))
         parts.append(part)
     return Person(
