@@ -136,7 +136,8 @@ def find_room(path: Path, room_of: dict[Path, str]) -> str:
 def sum_of(counts: list[Count]) -> Count:
     """Add counts of rooms."""
     names = [field.name for field in fields(Count)]
-    return Count(**{name: sum(getattr(count, name) for count in counts) for name in names})
+    sums = {name: sum(getattr(count, name) for count in counts) for name in names}
+    return Count(**sums)
 
 
 def print_row(name: str, count: Count, budget: int) -> None:

@@ -36,7 +36,8 @@ def check_embedding(
     rest = np.asarray(rest_positions, dtype=np.float64)
     fine = checked_vectors("points", points, None)
     size = float(np.ptp(fine, axis=0).max()) if len(fine) else 0.0
-    size = max(size, float(np.ptp(rest[np.isfinite(rest).all(axis=1)], axis=0).max()))
+    finite = rest[np.isfinite(rest).all(axis=1)]
+    size = max(size, float(np.ptp(finite, axis=0).max()))
     # A turn by 2.2 radians about a slanted axis, as the rotation of a unit quaternion.
     w, x, y, z = np.array([1.0, 1.0, -1.5, 0.8]) / np.sqrt(4.89)
     turn = np.array(

@@ -60,7 +60,8 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
     for weight in (weights, np.ones_like(weights)):
         vectors = (weight[:, :, None] * crosses[:, None]).reshape(-1, 3)
         sums = np.linalg.norm(_sums(sectors.ravel(), vectors, count), axis=1)
-        sizes = _sums(sectors.ravel(), (weight * areas[:, None]).reshape(-1, 1), count)[:, 0]
+        weighted_areas = (weight * areas[:, None]).reshape(-1, 1)
+        sizes = _sums(sectors.ravel(), weighted_areas, count)[:, 0]
         is_unsound |= sums < LEAST_SIDE * sizes
     corners = np.flatnonzero(is_unsound[sectors])
     sectors.ravel()[corners] = count + np.arange(len(corners))

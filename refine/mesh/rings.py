@@ -81,13 +81,12 @@ def vertex_rings(connectivity: Connectivity) -> Rings:
     near = np.repeat(np.arange(vertex_count, dtype=np.uint32)[:, None], NEAR_COUNT, axis=1)
     near[centres[is_near], place[is_near]] = neighbours[is_near]
     own -= ring * np.maximum(NEAR_COUNT - sizes, 0)
+    other_counts = np.maximum(sizes - NEAR_COUNT, 0)
     return Rings(
         own=own.astype(np.float32),
         ring=ring.astype(np.float32),
         near=near,
-        starts=np.concatenate([[0], np.cumsum(np.maximum(sizes - NEAR_COUNT, 0))]).astype(
-            np.uint32
-        ),
+        starts=np.concatenate([[0], np.cumsum(other_counts)]).astype(np.uint32),
         others=neighbours[~is_near].astype(np.uint32),
     )
 

@@ -260,7 +260,8 @@ def test_pictures_stand_behind_faces(tmp_path):
         is_hair = shot.known.images["segmentation"] == Segment.HAIR
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
         assert inner.mean() > 0.2
-        off = np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max(axis=1)
+        colours = shot.image[1:-1, 1:-1][inner].astype(int)
+        off = np.abs(colours - (10, 200, 30)).max(axis=1)
         assert (off > 1).mean() < 0.02  # the rim of hair on the far side
     apart = np.abs(behind["colour"].astype(int) - behind["picture"]).max(axis=2)
     assert (apart > 2).sum() <= 3  # where many layers of hair, each rounded, are above each other

@@ -106,7 +106,8 @@ def test_boundaries_become_smooth(head):
             along = np.diff(vertices[[*loop, loop[0]]], axis=0)
             along /= norm(along, axis=1, keepdims=True)
             cosine = (along * np.roll(along, 1, axis=0)).sum(axis=1)
-            found.append(float(np.median(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))))
+            angles = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+            found.append(float(np.median(angles)))
         return found
 
     coarse = turns(head.vertices, head.faces)

@@ -57,16 +57,23 @@ def furrows_along(depth: np.ndarray) -> int:
 
 def test_lines_get_more_and_deeper_with_age_and_in_men():
     """On average, lines are more and deeper at seventy than at twenty-five, and in men."""
-    young, old = people(25.0), people(70.0)
+    young = people(25.0)
+    old = people(70.0)
+    women = people(50.0, Sex.WOMAN)
+    men = people(50.0, Sex.MAN)
+
+    def mean(lines, name):
+        """The mean of a field of some persons' lines."""
+        return np.mean([getattr(each, name) for each in lines])
+
     for name in ("forehead", "feet", "reach", "fine"):
-        assert np.mean([getattr(x, name) for x in old]) > np.mean([getattr(x, name) for x in young])
-    women, men = people(50.0, Sex.WOMAN), people(50.0, Sex.MAN)
+        assert mean(old, name) > mean(young, name)
     for name in ("forehead_depth", "frown_depth", "feet_depth", "fold_depth"):
-        means = [np.mean([getattr(x, name) for x in lines]) for lines in (young, old, women, men)]
-        assert means[1] > 1.3 * means[0], name
-        assert means[3] > means[2], name
-    woman, man = (np.mean([x.forehead_depth / x.feet_depth for x in y]) for y in (women, men))
-    assert man > 1.05 * woman
+        assert mean(old, name) > 1.3 * mean(young, name), name
+        assert mean(men, name) > mean(women, name), name
+    ratio_of_women = np.mean([each.forehead_depth / each.feet_depth for each in women])
+    ratio_of_men = np.mean([each.forehead_depth / each.feet_depth for each in men])
+    assert ratio_of_men > 1.05 * ratio_of_women
 
 
 def test_patterns_have_their_published_frequencies():

@@ -71,7 +71,8 @@ def _write_glb(folder, other):
     mesh.write_bytes(
         trimesh.Trimesh(vertices, faces, process=False, visual=visual).export(file_type="glb")
     )
-    of_landmarks = [int(np.flatnonzero(corners % len(uv[::2]) == n)[0]) for n in other.landmarks]
+    original = corners % len(other.mesh.vertices)  # vertex of the head, for each vertex of the file
+    of_landmarks = [int(np.flatnonzero(original == vertex)[0]) for vertex in other.landmarks]
     marks.write_text(json.dumps(of_landmarks))
     return mesh, marks
 

@@ -135,10 +135,9 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
     """The upper lid covers one or two millimetres of the iris; the lower lid touches its edge."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         margin = head.vertices[head.rings[f"eye_1_{side}"]] - eye.centre
-        above, below = (
-            np.abs(margin[(np.abs(margin[:, 0]) < 3.0) & (sign * margin[:, 1] > 0.0), 1]).mean()
-            for sign in (1.0, -1.0)
-        )
+        heights = margin[np.abs(margin[:, 0]) < 3.0, 1]
+        above = heights[heights > 0.0].mean()
+        below = -heights[heights < 0.0].mean()
         assert 1.0 < eye.iris_radius - above < 2.0
         assert -0.4 < eye.iris_radius - below < 0.8
 

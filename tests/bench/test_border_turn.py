@@ -115,7 +115,8 @@ def test_needs_are_continuous(seed, amplitude):
     shares = np.linspace(0.0, 1.0, 200)
     poses = [start + share * (end - start) for share in shares]
     edges = refine.connect(mesh.faces, len(start)).edges
-    shortest = min(norm(np.diff(pose[edges], axis=1), axis=2).min() for pose in poses)
+    lengths = [norm(np.diff(pose[edges], axis=1), axis=2) for pose in poses]
+    shortest = np.min(lengths)
     step = norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
     for before, after in pairwise(metrics_of(mesh, *poses)):
         assert np.abs(after - before).max() <= 200.0 * step + 1e-3

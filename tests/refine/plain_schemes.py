@@ -89,10 +89,11 @@ def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
     for a, b in edges:
         beside[a].append(normals[b])
         beside[b].append(normals[a])
-    return [
-        unit(mix((1, normal), *((-0.15 / len(others), other) for other in others)))
-        for normal, others in zip(normals, beside, strict=True)
-    ]
+    steep = []
+    for normal, others in zip(normals, beside, strict=True):
+        subtracted = [(-0.15 / len(others), other) for other in others]
+        steep.append(unit(mix((1, normal), *subtracted)))
+    return steep
 
 
 def is_corner(before: Vector, here: Vector, after: Vector) -> bool:

@@ -75,7 +75,8 @@ def test_ways_are_the_cheapest(surface, generator, hindrance):
     wanted = scipy.sparse.csgraph.dijkstra(graph, directed=False, indices=stops)
     both = graph + graph.T
     spent = sum(both[a, b] for a, b in pairwise(way))
-    assert spent == pytest.approx(sum(wanted[k, stops[k + 1]] for k in range(3)))
+    least = sum(wanted[k, stops[k + 1]] for k in range(3))
+    assert spent == pytest.approx(least)
     assert way[0] == stops[0] and way[-1] == stops[-1]
 
 
