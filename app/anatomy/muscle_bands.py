@@ -14,15 +14,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
-from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
-from risorius.geometry.mesh_graph import path_lengths
 from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Face
+from .resting_skin import RestingSkin
 
 ROW_COUNT = 22  # places along a band
 SECTION_POINTS = 12  # places around a band's cross section
@@ -45,7 +43,6 @@ SPHINCTERS = (
 FRACTIONS = np.linspace(0.0, 1.0, ROW_COUNT)  # of a band's length, at its rows
 BELLY_PROFILE = np.sin(np.pi * FRACTIONS)  # 1 in the middle
 WIDTH_PROFILE = np.sqrt(np.clip(1.0 - (2.0 * FRACTIONS - 1.0) ** 8, 0.0, 1.0))  # round
-NEIGHBOUR_COUNT = 8  # number of vertices that determine the place of the skin
 LANDMARKS_AROUND = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}
 
 
@@ -105,7 +102,7 @@ class Muscles:
         self._width = np.array([band.width for band in (*linear, *rings)])
         looks_from = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
         bone_depth = np.asarray(face.simulated_head.bone_depth)
-        skin = _Skin(simulation.rest_positions, simulation.faces, bone_depth, looks_from)
+        skin = RestingSkin(simulation.rest_positions, simulation.faces, bone_depth, looks_from)
         ring_lines = np.array([band.line for band in rings])
         for _ in range(4):
             outside, normal, _ = skin.at(ring_lines)
@@ -114,7 +111,7 @@ class Muscles:
         self._length = _lengths(self._rest[1])
         self._lay_out()
 
-    def _place(self, skin: _Skin, lines: Floats64) -> None:
+    def _place(self, skin: RestingSkin, lines: Floats64) -> None:
         """Place bands along lines (b, ROW_COUNT, 3) between resting skin and bone; bind them."""
         for _ in range(2):
             outside, normal, depth = skin.at(lines)
@@ -234,78 +231,6 @@ class Muscles:
         along = self._length[:, None, None] * FRACTIONS[:, None]
         both = np.broadcast_arrays(across, along)
         self.striation = np.stack(both, axis=-1).reshape(-1, 2).astype(np.float32)
-
-
-class _Skin:
-    """The skin at rest, measured near given points.
-
-    Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
-    """
-
-    def __init__(self, x: Floats64, faces: Any, bone: Floats64, middle: Floats64) -> None:
-        """bone: depth of the bone below each vertex of x. middle: outward directions begin here."""
-        self.x = x
-        self._faces = faces
-        self._bone = bone
-        self._middle = middle
-        self.normals = vertex_normals(x, faces)
-        self._tree = scipy.spatial.cKDTree(x)
-
-    def at(self, points: Floats64) -> tuple[Floats64, Floats64, Floats64]:
-        """Return the heights of points (..., 3) above the skin, normals, and depths of the bone."""
-        out = (points - self._middle) * (1.0, 0.25, 1.0)
-        near, weight = self._nearest(points, out)
-        weight /= weight.sum(axis=-1, keepdims=True)
-        normals = self.normals[near]
-        off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
-        normal = unit_vectors(np.einsum("...k,...kc->...c", weight, normals))
-        return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
-
-    def heights(self, points: Floats64, out: Floats64) -> Floats64:
-        """Return the heights of points above the nearest triangles.
-
-        points: sections of bands, (b, ROW_COUNT, SECTION_POINTS, 3).
-        out: outward directions of the bands, (b, ROW_COUNT, 3), which the triangles face.
-        """
-        facing = np.broadcast_to(out[:, :, None], points.shape).reshape(-1, 3)
-        other_side = 20.0  # [mm] added to the distance of a triangle that faces the other way
-        flat = points.reshape(-1, 3)
-        near = closest_points(flat, self.x, self._faces, facing, other_side)
-        off = flat - near.interpolate(self.x)
-        height: Floats64 = np.einsum("nc,nc->n", off, unit_vectors(near.interpolate(self.normals)))
-        return height.reshape(points.shape[:-1])
-
-    def _nearest(
-        self, points: Floats64, out: Floats64, count: int = NEIGHBOUR_COUNT, reach: float = 0.35
-    ) -> tuple[Any, Floats64]:
-        """Return the `count` vertices nearest to points, and their weights, (..., count) each."""
-        away, near = self._tree.query(points, k=count)
-        is_faced = np.einsum("...kc,...c->...k", self.normals[near], out) > 0.0
-        scale = reach * np.maximum(away[..., NEIGHBOUR_COUNT - 1 : NEIGHBOUR_COUNT] ** 2, 1e-30)
-        return near, 1e-9 + is_faced * np.exp(-(away**2) / scale)
-
-    def carriers(self, points: Floats64, out: Floats64) -> Any:
-        """Return weights of vertices that carry the skin over bands, a sparse matrix (n, V).
-
-        points, out: places and outward directions over edges and middles, (3, b, ROW_COUNT, 3).
-
-        Where the mouth is closed, both lips have vertices near a point. A vertex carries a point
-        only if the path along the skin from the band's middle is not much longer than the straight
-        line.
-        """
-        near, weight = self._nearest(points, out, 3 * NEIGHBOUR_COUNT, 1.0)
-        first = np.take_along_axis(near[1], weight[1].argmax(axis=-1)[..., None], -1)
-        starts, number = np.unique(first, return_inverse=True)
-        path_length = path_lengths(self.x, self._faces, starts)
-        straight = np.linalg.norm(self.x[near] - self.x[first], axis=-1)
-        weight *= path_length[number.reshape(first.shape), near] <= 1.5 * straight + 1e-9
-        alone = weight.sum(axis=-1, keepdims=True) == 0.0
-        near = np.concatenate([near, np.broadcast_to(first, alone.shape)], axis=-1)
-        weight = np.concatenate([weight, alone], axis=-1)
-        weight /= weight.sum(axis=-1, keepdims=True)
-        rows = np.repeat(np.arange(alone.size), near.shape[-1])
-        place = rows, near.ravel()
-        return scipy.sparse.coo_array((weight.ravel(), place), (alone.size, len(self.x))).tocsr()
 
 
 def _linear_bands(
