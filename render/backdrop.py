@@ -43,7 +43,7 @@ class Backdrop:
         Nothing may have been drawn into the frame before.
         """
         if self._store is None or self._store.size != target.size:
-            self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
+            self._store = self._gl.framebuffer([target.new_texture(target.size)])
             self._stored = None
         wanted = {}
         for view, background in zip(views, backgrounds, strict=True):

@@ -12,7 +12,7 @@ import moderngl
 
 from .edges import EdgeSmoother
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget, scaled
+from .render_target import NewTexture, Rectangle, RenderTarget, scaled
 
 _UNIT = 4  # texture unit while enlarging
 
@@ -39,10 +39,13 @@ class Compositor:
     frame: the framebuffer.
     """
 
-    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+    def __init__(
+        self, gl: moderngl.Context, size: tuple[int, int], new_texture: NewTexture
+    ) -> None:
         self.size = size
         self._gl = gl
-        self._colour = gl.renderbuffer(size, 4)
+        self._new_texture = new_texture
+        self._colour = new_texture(size)
         self.frame = gl.framebuffer([self._colour])
         program = compile_program(gl, "stretch.glsl")
         program["scene"] = _UNIT
@@ -71,19 +74,30 @@ class Compositor:
         target.use()
         gl.viewport = (0, 0, *self.size)  # set for the bound framebuffer
         gl.scissor = area
-        if scene.size == self.size:
+        if scene.size == self.size and target is self.frame:
             gl.copy_framebuffer(target, frame)
         else:
-            gl.disable(moderngl.DEPTH_TEST)
-            colour.use(_UNIT)
-            self._plain.render(moderngl.TRIANGLES, vertices=3)
-            gl.enable(moderngl.DEPTH_TEST)
+            self._draw(colour)
         gl.scissor = None
+
+    def _draw(self, picture: moderngl.Texture) -> None:
+        """Draw a picture over the viewport.
+
+        Windows have their first row at the top, so software OpenGL copies no block of a
+        framebuffer into them, and draws faster than it copies row by row.
+        """
+        gl = self._gl
+        is_enlarged = picture.size != self.size
+        picture.filter = (moderngl.LINEAR if is_enlarged else moderngl.NEAREST,) * 2
+        gl.disable(moderngl.DEPTH_TEST)
+        picture.use(_UNIT)
+        self._plain.render(moderngl.TRIANGLES, vertices=3)
+        gl.enable(moderngl.DEPTH_TEST)
 
     def _smoother_of(self, size: tuple[int, int]) -> EdgeSmoother:
         """Return the smoother for scenes of some size; the last smoother is kept."""
         if self._smoother is None or self._smoother.size != size:
-            self._smoother = EdgeSmoother(self._gl, size)
+            self._smoother = EdgeSmoother(self._gl, size, self._new_texture)
         return self._smoother
 
     def _in_scene(self, scene: RenderTarget, area: Rectangle | None) -> Rectangle | None:
@@ -104,6 +118,8 @@ class Compositor:
 
     def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
         """Copy this frame, except the rectangle `around`, to a framebuffer of the same size."""
+        target.use()
+        self._gl.viewport = (0, 0, *self.size)
         width, height = self.size
         left, bottom, right, top = *around[:2], around[0] + around[2], around[1] + around[3]
         for rectangle in (
@@ -114,7 +130,7 @@ class Compositor:
         ):
             if rectangle[2] > 0 and rectangle[3] > 0:
                 self._gl.scissor = rectangle  # limits the copy
-                self._gl.copy_framebuffer(target, self.frame)
+                self._draw(self._colour)
         self._gl.scissor = None
 
     def read(self) -> bytes:

@@ -7,7 +7,7 @@ half the time of a single pass, because the early depth test skips pixels withou
 import moderngl
 
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget
+from .render_target import NewTexture, Rectangle, RenderTarget
 
 _UNIT = 4  # texture unit of the scene
 
@@ -18,11 +18,12 @@ class EdgeSmoother:
     colour: texture with the copy. frame: framebuffer of this texture.
     """
 
-    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+    def __init__(
+        self, gl: moderngl.Context, size: tuple[int, int], new_texture: NewTexture
+    ) -> None:
         self.size = size
         self._gl = gl
-        self.colour = gl.texture(size, 4)
-        self.colour.repeat_x = self.colour.repeat_y = False
+        self.colour = new_texture(size)
         found = gl.depth_renderbuffer(size)
         self.frame = gl.framebuffer([self.colour], found)
         self._edges = gl.framebuffer(depth_attachment=found)

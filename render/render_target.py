@@ -4,7 +4,8 @@ Each pixel is shaded once. If a pixel shows several surfaces, `sample_mixer.py` 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import moderngl
 import numpy as np
@@ -13,6 +14,8 @@ from ..geometry.arrays import Unsigned8
 from .errors import GLError
 
 Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+NewTexture = Callable[[tuple[int, int]], moderngl.Texture]
+"""Makes a texture of four bytes per texel that is clamped at its borders, of a size [pixels]."""
 
 
 class RenderTarget:
@@ -22,9 +25,16 @@ class RenderTarget:
     colour: texture with the picture.
     surfaces: texture with surface numbers and depths, see surface_number.glsl.
     frame: framebuffer with the colour and a depth buffer.
+    new_texture: makes textures to and from which the colour is copied.
     """
 
-    def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        size: tuple[int, int],
+        samples: int,
+        new_texture: NewTexture | None = None,
+    ) -> None:
         limit = min(int(gl.info[f"GL_MAX_{kind}_SIZE"]) for kind in ("RENDERBUFFER", "TEXTURE"))
         if max(size) > limit:
             raise GLError(
@@ -35,8 +45,9 @@ class RenderTarget:
         self.samples = samples
         self._gl = gl
         self.frame_number = 0  # number of frames since the target was made
-        self.colour = _texture(gl, size)
-        self.surfaces = _texture(gl, size)
+        self.new_texture = new_texture or partial(clamped_texture, gl)
+        self.colour = self.new_texture(size)
+        self.surfaces = clamped_texture(gl, size)
         depth = gl.depth_renderbuffer(size)
         self.frame = gl.framebuffer([self.colour], depth)
         self._numbered = gl.framebuffer([self.surfaces])
@@ -94,7 +105,7 @@ class RenderTarget:
         )
 
 
-def _texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
+def clamped_texture(gl: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
     """Return a texture of four bytes per texel that is clamped at its borders."""
     texture = gl.texture(size, 4)
     texture.repeat_x = texture.repeat_y = False

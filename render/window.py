@@ -6,15 +6,17 @@ imported before glfw, and a server without a screen does not need glfw.
 
 import contextlib
 from collections.abc import Iterator, Sequence
+from functools import partial
 from types import ModuleType
 from typing import Any
 
 import moderngl
 import numpy as np
 
+from .byte_order import window_textures
 from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
-from .render_target import Rectangle, RenderTarget
+from .render_target import NewTexture, Rectangle, RenderTarget, clamped_texture
 from .style import Colour
 from .surface import (
     NEWEST_VERSION,
@@ -51,7 +53,10 @@ class WindowSurface(Surface):
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
         self.labels: Sequence[tuple[int, int, Image]] = ()
-        self._compositor = Compositor(gl, size)
+        self._new_texture: NewTexture = partial(clamped_texture, gl)
+        if self.is_software:
+            self._new_texture = window_textures(gl, glfw.get_proc_address)
+        self._compositor = Compositor(gl, size, self._new_texture)
         self._is_resolved = False  # whether `resolve` was called in this frame
         self._is_laid = False  # whether the compositor has the current scene
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
@@ -79,13 +84,13 @@ class WindowSurface(Surface):
         self.make_current()
         size = self.frame_size
         if size != self.size:
-            self._compositor = Compositor(self.gl, size)
+            self._compositor = Compositor(self.gl, size, self._new_texture)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
         self.samples = possible_samples(self.gl, self.detail.samples)
         self.scale = self.detail.scale
         scaled = self.detail.scaled(size)
         if (scaled, self.samples) != (self.target.size, self.target.samples):
-            self.target = RenderTarget(self.gl, scaled, self.samples)
+            self.target = RenderTarget(self.gl, scaled, self.samples, self._new_texture)
         self._is_resolved = False
         super().begin()
 

@@ -16,7 +16,7 @@ uniform sampler2D scene;
 out vec4 pixel_colour;
 
 void main() {
-    pixel_colour = textureLod(scene, place, 0.0);
+    pixel_colour = texture(scene, place);  // software OpenGL has no fast path for textureLod
 }
 
 #endif
