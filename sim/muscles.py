@@ -270,13 +270,15 @@ def _ring_pull(
     seam = landmarks[[62, 66], 1].mean()
     mouth_round = 1.08  # half widths of the mouth at which flare and parting end
     # The flare is an ellipse through the mouth's corners, because a uniform flare gives straight
-    # edges.
+    # edges. Round an opening it goes away from it, also sideways, as lips roll out.
     corner = mouth_round * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
-    place = x[:, 0] / corner
+    place = x[:, 0] / (_half_width(muscle, landmarks) or corner)
     across = np.sqrt(np.maximum(1.0 - place**2, 0.0))
     flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
-    height = (x[:, 1] - seam) / flare_height
-    pull[:, 1] += muscle.flare * np.tanh(height) * across
+    flare = muscle.flare * np.tanh((x[:, 1] - seam) / flare_height)
+    pull[:, 1] += flare * across
+    if muscle.opening != (0.0, 0.0):
+        pull[:, 0] += np.abs(flare) * np.sign(muscle.flare) * np.clip(place, -1.0, 1.0)
     pull += muscle.bulge * attached.normals
     return pull
 
@@ -284,14 +286,21 @@ def _ring_pull(
 def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats64:
     """Return how far a sphincter lifts points off the mouth line for a round opening [mm], (n,).
 
-    Seen from the front, the opening lies between two parabolas. Outside it the lips touch, so a
-    funnel is narrower than the mouth.
+    Seen from the front, the opening is an ellipse. Beside it lips are pressed together, so a funnel
+    is narrower than the mouth.
     """
-    half_width, height = muscle.opening
     seam = landmarks[[62, 66], 1].mean()
     side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(x[:, 1] - seam))
-    lifted: Floats64 = side * height * np.maximum(1.0 - (x[:, 0] / half_width) ** 2, 0.0)
+    within = 1.0 - (x[:, 0] / _half_width(muscle, landmarks)) ** 2
+    most_pressed = 0.33  # share of the opening's height (fitted)
+    raised = np.sqrt(np.maximum(within, 0.0)) + np.clip(within, -most_pressed, 0.0)
+    lifted: Floats64 = side * muscle.opening[1] * raised
     return lifted
+
+
+def _half_width(muscle: RingMuscle, landmarks: Floats64) -> float:
+    """Half width of a sphincter's opening [mm]; 0 without one."""
+    return muscle.opening[0] * abs(float(landmarks[64, 0] - landmarks[60, 0])) / 2.0
 
 
 def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:

@@ -224,11 +224,12 @@ class RingMuscle(Muscle):
     contraction: Annotated[Triple, Within(-2.0, 2.0)] = (0.2, 0.2, 0.2)
     push: Annotated[Triple, Within(-30.0, 30.0)] = (0.0, 0.0, 0.0)
     bulge: Annotated[float, Within(0.0, 40.0)] = 0.0  # mm outward along the skin's normal
-    # mm up for the upper, down for the lower lip
+    # mm up for the upper, down for the lower lip; away from an opening
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
     # about the centre: skin above it goes forward, skin in front of it to the side
     turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
-    # mm, half width and height of a round opening between the lips; both 0: none
+    # of a round opening between the lips: its width as a share of the mouth's, and each lip's way
+    # [mm]; both 0: none
     opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)
     arc_deg: Annotated[Triple, Within(-360.0, 360.0)] = (0.0, 180.0, 1.0)
 
