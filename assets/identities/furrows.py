@@ -113,11 +113,11 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
             1.0 + 0.02 * (y - 18.0)
         )
         own += 0.45 * _random_curve(18.0, y, random)
-        low, high = random.uniform(9.0, 13.0), random.uniform(27.0, 37.0)
-        ends = smooth_step(low, low + 6.0, y) * smooth_step(high, high - 9.0, y)
+        low, high = random.uniform(8.0, 11.0), random.uniform(29.0, 37.0)
+        ends = smooth_step(low, low + 9.0, y) * smooth_step(high, high - 16.0, y)
         factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
         depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _random_curve(14.0, y, random))
-        found.append(Line(own, depth, 2.1, 3.7, 1.3))
+        found.append(Line(own, depth, 1.7, 4.4, 0.8))
     return found
 
 

@@ -184,3 +184,8 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
     bare = replace(person, identity=replace(person.identity, lines=None))
     unlined = coloured(bare, angle=40.0).wrinkles.map[4 * below.start :]
     assert_array_equal(unlined, bare.wrinkles.map[4 * below.start :])
+
+
+def test_lines_between_the_brows_are_a_pair():
+    """The shallower line is at least 0.45 times as deep as the other; it was 0.2 once."""
+    assert max(each.uneven for each in people(40.0)) * 1.2 < 0.55
