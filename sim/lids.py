@@ -270,7 +270,7 @@ def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64)
     """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
     where = np.linspace(0.0, 1.0, COLUMN_COUNT)
-    proud = proud_height * np.minimum(np.interp(column, where, full), 1.0)
+    proud = proud_height * np.minimum(2.0 * np.interp(column, where, full), 1.0)
     sunk: Floats64 = np.interp(column, where, upper.depth - lower.depth) - proud
     return sunk
 

@@ -127,3 +127,13 @@ def test_vertices_of_an_edge_are_on_its_lid():
     side = np.array([-0.5, 1.0, -0.3, -0.5, -1.0, 0.2])
     found = side_with_edges(side, np.array([0, 1, 2, 3]), np.array([0, 4, 5, 3]))
     assert_array_equal(found, [-0.5, 1.0, 1.0, -0.5, -1.0, -1.0])
+
+
+def test_the_inner_third_of_a_shut_upper_lid_covers_the_lower(head):
+    """The upper edge lies at most 0.1 mm behind the lower one, which showed as pale scraps."""
+    person = make_person(sample_identity(18))
+    shut = sim.create(person)
+    x = person.vertices + settled_displacement(shut, both_sides(shut, {"AU43": 1.0}))
+    ring = head.rings["eye_2_left"]
+    away = norm(x[ring] - np.asarray(person.eyes[1].centre), axis=1)
+    assert (away[1:5] - away[19:15:-1]).min() > -0.1
