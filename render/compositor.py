@@ -5,6 +5,8 @@ pixels (`Detail`). Then edges.py smooths its edges, and this module enlarges it.
 scene are kept: if only a panel changes, they are copied instead of drawn again.
 """
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,7 +80,21 @@ class Compositor:
             gl.copy_framebuffer(target, frame)
         else:
             self._draw(colour)
+            if area is not None:
+                self._mend_borders(area, colour)
         gl.scissor = None
+
+    def _mend_borders(self, area: Rectangle, picture: moderngl.Texture) -> None:
+        """Draw the borders of an enlarged area anew, with pixels from further inside.
+
+        Enlargement mixes the outermost pixels of the area with black pixels beside it.
+        """
+        width, height = self.size
+        for strip, (x, y) in _borders(area, self.size, picture.size[0] / width):
+            self._gl.scissor = strip
+            self._gl.viewport = x, y, width, height
+            self._draw(picture)
+        self._gl.viewport = 0, 0, width, height
 
     def _draw(self, picture: moderngl.Texture) -> None:
         """Draw a picture over the viewport.
@@ -101,8 +117,14 @@ class Compositor:
         return self._smoother
 
     def _in_scene(self, scene: RenderTarget, area: Rectangle | None) -> Rectangle | None:
-        """Convert an area of this frame to pixels of the scene."""
-        return None if area is None else scaled(area, scene.size[0] / self.size[0])
+        """Convert an area of this frame to pixels of the scene, without its outermost pixels.
+
+        They are left unsmoothed: smoothing would find an edge to black pixels beside the area.
+        """
+        if area is None:
+            return None
+        x, y, width, height = scaled(area, scene.size[0] / self.size[0])
+        return x + 1, y + 1, max(width - 2, 0), max(height - 2, 0)
 
     def draw_label(self, x: int, y: int, image: Any) -> None:
         """Draw a label (h, w, 4) into the bound framebuffer; see `WindowSurface.labels`."""
@@ -136,3 +158,30 @@ class Compositor:
     def read(self) -> bytes:
         """Return the pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))
+
+
+def _borders(
+    area: Rectangle, size: tuple[int, int], scale: float
+) -> Iterator[tuple[Rectangle, tuple[int, int]]]:
+    """Yield strips [pixels] inside the borders of an area that are not borders of the frame.
+
+    The second value is how far the picture moves out, so that a strip shows pixels beside it.
+    """
+    if scale == 1.0:
+        return
+    depth = math.ceil(0.5 / scale)  # as far as an enlarged pixel is mixed with the next one
+    for x, width, right in _bands(area[0], area[2], size[0], depth):
+        for y, height, up in _bands(area[1], area[3], size[1], depth):
+            if min(width, height) > 0 and (right or up):
+                yield (x, y, width, height), (right, up)
+
+
+def _bands(start: int, length: int, frame: int, depth: int) -> tuple[tuple[int, int, int], ...]:
+    """Return first pixel, number of pixels and motion of an area's two borders and its middle."""
+    before = depth if start > 0 else 0
+    after = depth if start + length < frame else 0
+    return (
+        (start, before, -before),
+        (start + before, length - before - after, 0),
+        (start + length - after, after, after),
+    )

@@ -110,6 +110,21 @@ def test_a_coarser_scene_fills_the_window(window):
     assert not images[1][:, 52:].any()
 
 
+@pytest.mark.parametrize("scale", [0.5, 0.25])
+def test_a_coarser_scene_has_no_dark_borders(window, scale):
+    """Beside panels an enlarged scene is as bright as inside; black lines were there."""
+    renderer = render.Renderer(window)
+    window.detail = render.Detail(samples=0, scale=scale)
+    window.area = (16, 24, 48, 40)
+    white = render.Background((1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+    style = render.Style(background=white)
+    renderer.draw(render.Frame(render.CameraView(facing(), window.area), style))
+    window.end()
+    shown = window.read()
+    assert shown[32:72, 16:64].min() > 250
+    assert not shown[:, :16].any() and not shown[72:].any()
+
+
 def test_the_scene_can_be_shown_without_panels(window):
     """A second resolve shows the scene without the panel that was drawn over it."""
     renderer = render.Renderer(window)
