@@ -149,17 +149,18 @@ class TrackPainter:
         return is_dense
 
     def _draw_names(self, track: Track, top: float) -> None:
-        """Draw the names of poses above their keys; a name ends at the next name."""
+        """Draw the names of poses above their keys; a name ends at the next visible name."""
         axis = self._axis
         ink = ink_of(self._theme.muted)
-        ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
+        end = self._high
         least_name_width = 2.4  # [em]: a narrower name is unreadable
-        for (time, name), end in zip(track.names, ends, strict=False):
+        for time, name in reversed(track.names):
             if axis.start <= time <= axis.end:
                 x = axis.x(time) - em(self.KEY_RADIUS)
-                room = min(end, self._high) - x
+                room = end - x
                 if room >= min(em(least_name_width), imgui.calc_text_size(name).x):
                     self._lines.add_text((x, top), ink, shortened(name, room))
+                    end = axis.x(time) - em(0.6)
 
 
 def draw_line(xs: Floats64, ys: Floats64, ink: int, width: float = 1.0) -> None:
