@@ -26,19 +26,26 @@ STORED_SIDE = 144  # side of stored pictures, in which the network's pictures ar
 
 
 def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
-    """Cut out the face around points 17 to 67. points: (68, 2) [pixels]."""
+    """Cut out the face around points 17 to 67. points: (68, 2) [pixels].
+
+    Outside the picture is its mirror image. A black margin would show the network where the face
+    is, in most samples but in few photographs.
+    """
     low = points[17:].min(axis=0)
     high = points[17:].max(axis=0)
     size = (high - low).max()
     middle = 0.5 * (low + high) + [0.0, 0.15 * size]  # the chin is below
     half = 0.85 * size * STORED_SIDE / SIDE
     factor = max(round(2.0 * half / STORED_SIDE), 1)
-    box = np.concatenate([middle - half, middle + half]) / factor
-    small = picture.convert("RGB").reduce(factor)
-    cut = small.transform(
+    small = np.asarray(picture.convert("RGB").reduce(factor))
+    height, width = small.shape[:2]
+    corner = np.array([width, height])  # of the picture within the mirrored one
+    box = (*((middle - half) / factor + corner), *((middle + half) / factor + corner))
+    mirrored = np.pad(small, ((height, height), (width, width), (0, 0)), mode="reflect")
+    cut = PIL.Image.fromarray(mirrored).transform(
         (STORED_SIDE, STORED_SIDE),
         PIL.Image.Transform.EXTENT,
-        tuple(box),
+        box,
         PIL.Image.Resampling.BILINEAR,
     )
     return np.array(cut).transpose(2, 0, 1), ((points - middle) / half).astype(np.float32)
@@ -77,9 +84,15 @@ def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
 
 def points_of_dlib(faces: list[Face]) -> np.ndarray:
     """dlib's points in cut-out faces, (n, 68, 2) from -1 to 1; NaN if it finds no face."""
-    found = [read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1) for cut, _ in faces]
+    return np.stack([_middle_face(cut) for cut, _ in faces])
+
+
+def _middle_face(cut: np.ndarray) -> np.ndarray:
+    """dlib's points of the face nearest to the middle, because margins may have mirrored faces."""
+    found = read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1)
+    scaled = [points / (STORED_SIDE / 2) - 1.0 for points in found]
     nothing = np.full((68, 2), np.nan)
-    return np.stack([(each or [nothing])[0] for each in found]) / (STORED_SIDE / 2) - 1.0
+    return min(scaled, key=lambda points: np.abs(points.mean(axis=0)).max(), default=nothing)
 
 
 def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:

@@ -23,6 +23,8 @@ from risorius.bench.landmarks import GROUPS
 from risorius.faces import Faces
 from risorius.sim.landmarks import MIRRORED
 
+MIRRORED_POINTS = torch.from_numpy(MIRRORED)  # the number of each point in a mirrored picture
+
 
 def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
     """Pictures (n, 3, 144, 144) 0..255 and points (n, 68, 2)."""
@@ -39,7 +41,8 @@ def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tup
     middle = torch.tensor([[SIDE / STORED_SIDE, 0.0, 0.0], [0.0, SIDE / STORED_SIDE, 0.0]])
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
     grid = functional.affine_grid(view, [len(pictures), 3, SIDE, SIDE], align_corners=False)
-    inside = functional.grid_sample(pictures.float() / 255.0, grid, align_corners=False)
+    bright = pictures.float() / 255.0
+    inside = functional.grid_sample(bright, grid, padding_mode="reflection", align_corners=False)
     turn = view[:, :, :2]
     shift = view[:, None, :, 2]
     places = (points - shift) @ torch.linalg.inv(turn).transpose(1, 2)
@@ -57,19 +60,19 @@ def varied(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _turned(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
-    """Turn, scale, shift and mirror at random."""
+    """Turn, scale, stretch, shift and mirror at random."""
     count = len(pictures)
-    angle = torch.randn(count) * 0.25  # radians
-    size = SIDE / STORED_SIDE * torch.exp(torch.randn(count) * 0.12)
+    angle = torch.randn(count) * 0.35  # radians
+    size = SIDE / STORED_SIDE * torch.exp(torch.randn(count) * 0.15)
+    stretch = torch.exp(torch.randn(count) * 0.06)
     is_mirrored = torch.rand(count) < 0.5
-    flip = torch.where(is_mirrored, -1.0, 1.0)
-    across = torch.stack([angle.cos() * flip, -angle.sin(), torch.randn(count) * 0.08], dim=1)
-    down = torch.stack([angle.sin() * flip, angle.cos(), torch.randn(count) * 0.08], dim=1)
+    width = torch.where(is_mirrored, -stretch, stretch)
+    across = torch.stack([angle.cos() * width, -angle.sin(), torch.randn(count) * 0.08], dim=1)
+    down = torch.stack([angle.sin() * width, angle.cos(), torch.randn(count) * 0.08], dim=1)
     changes = torch.stack([across, down], dim=1)
     changes[:, :, :2] *= size[:, None, None]
     inside, places = seen(pictures, points, changes)
-    mirrored_numbers = torch.from_numpy(MIRRORED)
-    places[is_mirrored] = places[is_mirrored][:, mirrored_numbers]
+    places[is_mirrored] = places[is_mirrored][:, MIRRORED_POINTS]
     return inside, places
 
 
@@ -163,6 +166,14 @@ def train(faces: list[Face], epochs: int, is_plain: bool) -> Network:
     return network.eval()
 
 
+def predicted(network: Network, pictures: Tensor) -> Tensor:
+    """Points (n, 68, 2) in pictures: the mean of those in the picture and in its mirror image."""
+    with torch.no_grad():
+        direct = network(pictures)
+        mirrored = network(pictures.flip(3))[:, MIRRORED_POINTS]
+    return 0.5 * (direct + mirrored * torch.tensor([-1.0, 1.0]))
+
+
 def percent(found: Tensor, places: Tensor) -> Tensor:
     """Errors (n, 68) of points (n, 68, 2), in percent of the distance between the eyes."""
     apart = (places[:, 36] - places[:, 45]).norm(dim=1, keepdim=True)
@@ -175,9 +186,7 @@ def report(name: str, faces: list[Face], network: Network, mean: Tensor) -> None
         return
     pictures, points = tensors(faces)
     inside, places = seen(pictures, points)
-    with torch.no_grad():
-        found = network(inside)
-    rows = {"mean face": mean.expand_as(places), "network": found}
+    rows = {"mean face": mean.expand_as(places), "network": predicted(network, inside)}
     rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * STORED_SIDE / SIDE).float()
     print(f"{name}, {len(faces)} faces [%]".ljust(44), *(f"{group:>7}" for group in GROUPS))
     for reader, places_found in rows.items():

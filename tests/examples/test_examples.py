@@ -116,8 +116,8 @@ def test_a_folder_without_a_set_is_named_in_one_line(tmp_path):
 def test_faces_are_cut_out_with_their_points(tmp_path):
     """A photograph and its `.pts` file become one cropped face with its points in place."""
     random = np.random.default_rng(4)
-    points = random.uniform([150.0, 120.0], [350.0, 330.0], (68, 2))
-    picture = PIL.Image.new("RGB", (500, 400))
+    points = random.uniform([400.0, 350.0], [600.0, 560.0], (68, 2))
+    picture = PIL.Image.new("RGB", (1000, 900))
     column, row = np.floor(points[30]).astype(int)
     picture.paste((255, 255, 255), (column - 4, row - 4, column + 5, row + 5))
     picture.save(tmp_path / "face.png")
@@ -130,6 +130,16 @@ def test_faces_are_cut_out_with_their_points(tmp_path):
     assert cut.shape == (3, 144, 144)
     bright = np.argwhere(cut[0] > 128).mean(axis=0)[::-1] + 0.5
     assert np.allclose((places[30] + 1.0) * 72.0, bright, atol=0.7)
+
+
+def test_a_face_at_a_corner_is_cut_out_without_black_margins():
+    """Margins outside a picture would show a network where the face is, so they are mirrored."""
+    random = np.random.default_rng(5)
+    points = random.uniform([0.0, 0.0], [40.0, 50.0], (68, 2))
+    picture = PIL.Image.new("RGB", (120, 90), (200, 180, 160))
+    cut, _ = example("landmark_faces").cut_out(picture, points)
+    assert (cut[0] == 200).all()
+    assert (cut[2] == 160).all()
 
 
 @pytest.mark.slow
