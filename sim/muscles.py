@@ -261,7 +261,7 @@ def _ring_pull(
     x = attached.positions
     centre = muscle.centre.position(landmarks, side)
     pull = np.array(muscle.contraction) * (centre - x)
-    if muscle.opening != (0.0, 0.0):
+    if muscle.opening_width > 0.0:
         pull[:, 1] += _round_mouth(muscle, x, landmarks)
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     roll, yaw = np.radians(muscle.turn_deg)
@@ -277,7 +277,7 @@ def _ring_pull(
     flare_height = 3.0  # mm from the mouth line where the flare is three quarters of its full size
     flare = muscle.flare * np.tanh((x[:, 1] - seam) / flare_height)
     pull[:, 1] += flare * across
-    if muscle.opening != (0.0, 0.0):
+    if muscle.opening_width > 0.0:
         pull[:, 0] += np.abs(flare) * np.sign(muscle.flare) * np.clip(place, -1.0, 1.0)
     pull += muscle.bulge * attached.normals
     return pull
@@ -294,13 +294,13 @@ def _round_mouth(muscle: RingMuscle, x: Floats64, landmarks: Floats64) -> Floats
     within = 1.0 - (x[:, 0] / _half_width(muscle, landmarks)) ** 2
     most_pressed = 0.33  # share of the opening's height (fitted)
     raised = np.sqrt(np.maximum(within, 0.0)) + np.clip(within, -most_pressed, 0.0)
-    lifted: Floats64 = side * muscle.opening[1] * raised
+    lifted: Floats64 = side * muscle.opening_height * raised
     return lifted
 
 
 def _half_width(muscle: RingMuscle, landmarks: Floats64) -> float:
     """Half width of a sphincter's opening [mm]; 0 without one."""
-    return muscle.opening[0] * abs(float(landmarks[64, 0] - landmarks[60, 0])) / 2.0
+    return muscle.opening_width * abs(float(landmarks[64, 0] - landmarks[60, 0])) / 2.0
 
 
 def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:

@@ -228,9 +228,9 @@ class RingMuscle(Muscle):
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
     # about the centre: skin above it goes forward, skin in front of it to the side
     turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
-    # of a round opening between the lips: its width as a share of the mouth's, and each lip's way
-    # [mm]; both 0: none
-    opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)
+    # of a round opening between the lips, as a share of the mouth's width; 0: none
+    opening_width: Annotated[float, Within(0.0, 3.0)] = 0.0
+    opening_height: Annotated[float, Within(0.0, 30.0)] = 0.0  # mm, of each lip's half of it
     arc_deg: Annotated[Triple, Within(-360.0, 360.0)] = (0.0, 180.0, 1.0)
 
 
