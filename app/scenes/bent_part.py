@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from risorius.assets.model import Part
-from risorius.geometry.arrays import Floats32, Floats64, Integers, Integers32
+from risorius.geometry.arrays import Floats64, Integers
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.read_only import read_only
 
@@ -47,41 +47,17 @@ class BentPart:
 
     def __init__(self, rest: Part) -> None:
         self.rest = rest
+        self.name = rest.name
+        self.faces = rest.faces
+        self.bone = rest.bone
+        self.shine = rest.shine
+        self.roots = rest.roots
+        self.strand_radius = rest.strand_radius
+        self.striation = rest.striation
+        self.is_enclosed = rest.is_enclosed
         self.vertices = rest.vertices
         self.normals = rest.normals
         self.colours = rest.colours
-
-    @property
-    def name(self) -> str:
-        return self.rest.name
-
-    @property
-    def faces(self) -> Integers32:
-        return self.rest.faces
-
-    @property
-    def bone(self) -> str:
-        return self.rest.bone
-
-    @property
-    def shine(self) -> float:
-        return self.rest.shine
-
-    @property
-    def roots(self) -> Integers32 | None:
-        return self.rest.roots
-
-    @property
-    def strand_radius(self) -> float:
-        return self.rest.strand_radius
-
-    @property
-    def striation(self) -> Floats32 | None:
-        return self.rest.striation
-
-    @property
-    def is_enclosed(self) -> bool:
-        return self.rest.is_enclosed
 
     def take_shape(self, vertices: Floats64) -> None:
         """Set the vertices, shape (n, 3), and compute their normals."""

@@ -15,7 +15,7 @@ SIGHT = np.array([0.0, 0.0, -1.0])  # from the front
     [
         ((43, 44), 3.0, "levator_palpebrae", "palpebral_lower"),
         ((57,), -8.0, "lower", "upper"),
-        ((51,), 5.0, "upper", "roll_lower"),
+        ((51,), 5.0, "peripheral_upper", "roll_lower"),
         ((50,), 5.0, "levator_labii_superioris", "roll_lower"),
         ((8,), -15.0, "jaw_open", "jaw_forward"),
         ((8,), -8.0, "jaw_open", "depressor_labii"),
