@@ -21,7 +21,7 @@ from .fitting.warp import Similarity
 from .loading import load
 from .model import Head, Part
 
-COARSE = "coarse"  # its name for users
+COARSE_NAME = "coarse"  # its name for users
 LAYOUT_FILE = Path(__file__).parent / "coarse.toml"
 
 
@@ -75,7 +75,7 @@ def coarse_head() -> CoarseHead:
         jaw_axis=known.jaw_axis,
         anatomy={name: int(number[v]) for name, v in known.anatomy.items() if number[v] >= 0},
         mirror=number[known.mirror[kept]],
-        called=COARSE,
+        called=COARSE_NAME,
     )
 
 

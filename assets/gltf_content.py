@@ -23,11 +23,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .user_files import MOST_VERTICES, named, path_beside, read_file, text_with_names
+from .user_files import MOST_FILE_VERTICES, named, path_beside, read_file, text_with_names
 
-COMPONENT_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-DRACO = "KHR_draco_mesh_compression"
-MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
+TYPE_OF_COMPONENT = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+DRACO_EXTENSION = "KHR_draco_mesh_compression"
+MESHOPT_EXTENSIONS = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 MOST_MEGABYTES = 100  # of one file that a document names
 
 
@@ -39,7 +39,7 @@ def decompressed_chunks(content: bytes, folder: Path) -> tuple[bytes, bytes | No
     them is missing.
     """
     text, data = _chunks_of(content)
-    if not any(name.encode() in text for name in (DRACO, *MESHOPT)):
+    if not any(name.encode() in text for name in (DRACO_EXTENSION, *MESHOPT_EXTENSIONS)):
         return text, data
     return _Decompression(json.loads(text.decode("utf-8-sig")), data, folder).result()
 
@@ -133,7 +133,7 @@ class _Decompression:
         self._document["buffers"] = [{"byteLength": len(self._plain)}]
         for key in ("extensionsUsed", "extensionsRequired"):
             names = self._document.pop(key, [])
-            left = [name for name in names if name not in (DRACO, *MESHOPT)]
+            left = [name for name in names if name not in (DRACO_EXTENSION, *MESHOPT_EXTENSIONS)]
             if left:
                 self._document[key] = left
         return json.dumps(self._document).encode(), bytes(self._plain)
@@ -146,7 +146,9 @@ class _Decompression:
 
     def _rows_of(self, view: dict[str, Any]) -> bytes:
         """The bytes of a buffer view, without the compression by meshopt."""
-        name = next((each for each in MESHOPT if each in view.get("extensions", {})), None)
+        name = next(
+            (each for each in MESHOPT_EXTENSIONS if each in view.get("extensions", {})), None
+        )
         if name is None:
             return self._stored(view)
         packed = view["extensions"].pop(name)
@@ -174,7 +176,7 @@ class _Decompression:
 
     def _decompress(self, primitive: dict[str, Any]) -> None:
         """Decompress a primitive that Draco compresses, unless it has uncompressed data, too."""
-        packed = primitive.get("extensions", {}).pop(DRACO, None)
+        packed = primitive.get("extensions", {}).pop(DRACO_EXTENSION, None)
         if packed is None:
             return
         accessors = self._document["accessors"]
@@ -188,7 +190,7 @@ class _Decompression:
             indices = None
         if not missing and indices is None:
             return
-        decoder = _package("DracoPy", DRACO)
+        decoder = _package("DracoPy", DRACO_EXTENSION)
         view = self._document["bufferViews"][packed["bufferView"]]
         start = view["byteOffset"]
         mesh = decoder.decode(bytes(self._plain[start : start + view["byteLength"]]))
@@ -201,9 +203,9 @@ class _Decompression:
 
     def _fill(self, accessor: dict[str, Any], rows: npt.NDArray[Any]) -> None:
         """Store the rows of an accessor (n, width), each in a multiple of four bytes."""
-        if len(rows) > 3 * MOST_VERTICES:
+        if len(rows) > 3 * MOST_FILE_VERTICES:
             raise AssetError(f"has {len(rows)} compressed rows; reduce it in a modelling program")
-        kind = np.dtype(COMPONENT_TYPES[accessor["componentType"]])
+        kind = np.dtype(TYPE_OF_COMPONENT[accessor["componentType"]])
         stored = np.ascontiguousarray(rows.reshape(len(rows), -1).astype(kind))
         if "min" in accessor and len(stored):  # Draco rounds places, and so moves their bounds
             accessor.update(min=stored.min(axis=0).tolist(), max=stored.max(axis=0).tolist())

@@ -20,8 +20,8 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .errors import AssetError
-from .gltf_content import COMPONENT_TYPES, Buffers, content_of, decompressed_chunks
-from .user_files import MOST_VERTICES, named
+from .gltf_content import TYPE_OF_COMPONENT, Buffers, content_of, decompressed_chunks
+from .user_files import MOST_FILE_VERTICES, named
 
 
 class GltfFile:
@@ -63,10 +63,10 @@ class GltfFile:
     def values(self, number: int) -> npt.NDArray[Any]:
         """Return an accessor's rows (count, width); normalized integers and floats as float64."""
         accessor = self.document.accessors[number]
-        kind = np.dtype(COMPONENT_TYPES[accessor.componentType])
+        kind = np.dtype(TYPE_OF_COMPONENT[accessor.componentType])
         widths = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
         width = widths[accessor.type]
-        most_rows = 3 * MOST_VERTICES
+        most_rows = 3 * MOST_FILE_VERTICES
         if not 0 <= accessor.count <= most_rows:
             raise AssetError(
                 f"has an accessor of {accessor.count} rows; allowed are {most_rows}: reduce the "
@@ -95,7 +95,7 @@ class GltfFile:
     def _filled_in(self, rows: npt.NDArray[Any], sparse: Any) -> npt.NDArray[Any]:
         """Rows with the replacements of a sparse accessor."""
         indices = sparse.indices
-        kind = np.dtype(COMPONENT_TYPES[indices.componentType])
+        kind = np.dtype(TYPE_OF_COMPONENT[indices.componentType])
         where = self._rows(indices.bufferView, indices.byteOffset, kind, (sparse.count, 1))[:, 0]
         shape = (sparse.count, rows.shape[1])
         filled = rows.copy()

@@ -19,7 +19,7 @@ from .errors import AssetError
 from .gltf_file import GltfFile, entry, fractions
 from .pictures import decoded, tinted
 
-WHITE = (1.0, 1.0, 1.0)
+WHITE_TINT = (1.0, 1.0, 1.0)
 
 
 class GltfPainter:
@@ -37,7 +37,7 @@ class GltfPainter:
         attributes = vars(primitive.attributes)
         nowhere = np.zeros((count, 2))
         if primitive.material is None:
-            return -1, nowhere, WHITE
+            return -1, nowhere, WHITE_TINT
         info, factor = _base_colour(self._document.materials[primitive.material])
         if info is None:
             return -1, nowhere, factor
@@ -79,7 +79,7 @@ class GltfPainter:
                 f"its picture {number} is not in it ({error}); export it anew"
             ) from None
         picture = decoded(content, title)
-        return picture if factor == WHITE else tinted(picture, factor)
+        return picture if factor == WHITE_TINT else tinted(picture, factor)
 
     def colours(self, attributes: Mapping[str, Any], factor: tuple[float, ...]) -> Unsigned8 | None:
         """The colours of vertices as sRGB, shape (V, 3); the file has linear light."""
@@ -103,7 +103,7 @@ def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
         metallic = material.pbrMetallicRoughness
         info = entry(metallic, "baseColorTexture")
         factor = entry(metallic, "baseColorFactor")
-    tint = tuple(float(each) for each in (factor or WHITE)[:3])
+    tint = tuple(float(each) for each in (factor or WHITE_TINT)[:3])
     is_there = info is not None and entry(info, "index") is not None
     return (info if is_there else None), tint
 

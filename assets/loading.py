@@ -18,21 +18,21 @@ import numpy.typing as npt
 from .data_files import read_arrays, read_toml
 from .errors import AssetError
 from .model import Eye, Head, Layer, Part, Plane
-from .sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
+from .sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
 
-FOLDER = Path(__file__).parent
-HEAD_FILE = FOLDER / "data" / "head.npz"
-RIG_FILE = FOLDER / "rigs" / "face.toml"
-WORDS_FILE = FOLDER / "words.toml"
+ASSET_FOLDER = Path(__file__).parent
+HEAD_FILE = ASSET_FOLDER / "data" / "head.npz"
+RIG_FILE = ASSET_FOLDER / "rigs" / "face.toml"
+WORDS_FILE = ASSET_FOLDER / "words.toml"
 ARRAY_NAMES = (  # arrays of the data file that become fields of a head unchanged
     "vertices faces landmarks bone_depth mandible_weight jaw_axis mirror uv".split()
 )
 LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
     {
-        "Action units": FOLDER / "action_units.toml",
-        "Expressions": FOLDER / "expressions.toml",
-        "Visemes": FOLDER / "visemes.toml",
-        "ARKit shapes": FOLDER / "arkit.toml",
+        "Action units": ASSET_FOLDER / "action_units.toml",
+        "Expressions": ASSET_FOLDER / "expressions.toml",
+        "Visemes": ASSET_FOLDER / "visemes.toml",
+        "ARKit shapes": ASSET_FOLDER / "arkit.toml",
     }
 )
 
@@ -52,7 +52,7 @@ def load(name: str) -> Head | Plane:
     if name == "head":
         return load_head()
     if name == "plane":
-        return Plane(*make_grid(COLUMN_COUNT, ROW_COUNT, CELL_SIZE))
+        return Plane(*make_grid(SHEET_COLUMNS, SHEET_ROWS, CELL_SIZE))
     others = "a mesh file is read by `read_mesh`, a head fitted by `fitting.fit_head`"
     raise AssetError(f"no asset is called {name!r}; available: head, plane; {others}")
 

@@ -25,7 +25,7 @@ from .gltf import read_gltf
 from .pictures import Texture, texture_of
 from .ply import read_ply
 from .topology import unique_points
-from .user_files import MOST_VERTICES, named, plain_text, read_file
+from .user_files import MOST_FILE_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
 MESH_FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
@@ -97,7 +97,7 @@ def read_mesh(path: str | Path) -> Mesh:
 def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
     """Read the mesh in a file of a format. folder: the folder with further files that it names."""
     if suffix == "obj":
-        surface = read_obj(content, most=MOST_VERTICES)
+        surface = read_obj(content, most=MOST_FILE_VERTICES)
         texture, notes = texture_of(surface, folder)
         return Mesh(surface.vertices, _numbers(surface.faces), texture, notes=notes)
     if suffix == "ply":
@@ -151,10 +151,10 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
     """Raise AssetError unless there are triangles, between finite vertices within range."""
     if not len(faces):
         raise AssetError("holds no triangles; it must hold the surface of a head, as polygons")
-    if max(len(faces), len(vertices)) > MOST_VERTICES:
+    if max(len(faces), len(vertices)) > MOST_FILE_VERTICES:
         raise AssetError(
             f"has {len(vertices)} vertices and {len(faces)} triangles; allowed are "
-            f"{MOST_VERTICES}: reduce it in a modelling program"
+            f"{MOST_FILE_VERTICES}: reduce it in a modelling program"
         )
     is_there = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
     if not is_there.all():

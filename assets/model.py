@@ -26,8 +26,8 @@ from .data_files import Image, read_arrays, read_image
 from .nostrils import lit_nostrils
 from .topology import quarter
 
-GLASSES = "glasses"  # the name of the part
-MASK = "mask"  # the name of the part
+GLASSES_NAME = "glasses"  # the name of the part
+MASK_NAME = "mask"  # the name of the part
 
 
 class Segment(IntEnum):
@@ -116,7 +116,7 @@ class Part:
     @property
     def is_enclosed(self) -> bool:
         """Whether the part is inside the head, where no light from behind arrives."""
-        if self.name in (GLASSES, MASK):
+        if self.name in (GLASSES_NAME, MASK_NAME):
             return False
         return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
 

@@ -30,13 +30,13 @@ class Norm:
     men: Sample
 
 
-_ROWS = read_toml(Path(__file__).with_name("norms.toml"))
+NORM_ROWS = read_toml(Path(__file__).with_name("norms.toml"))
 LANDMARK_PAIRS: dict[str, tuple[str, str]] = {
-    code: (*row["points"],) for code, row in _ROWS.items()
+    code: (*row["points"],) for code, row in NORM_ROWS.items()
 }
 NORMS = {
     code: Norm(Sample(*row["women"]), Sample(*row["men"]))
-    for code, row in _ROWS.items()
+    for code, row in NORM_ROWS.items()
     if "women" in row
 }
 

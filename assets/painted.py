@@ -15,7 +15,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers64
 from .meshes import Mesh, read_mesh
 from .pictures import libraries_of, material_key
-from .user_files import MOST_VERTICES, path_beside, read_file
+from .user_files import MOST_FILE_VERTICES, path_beside, read_file
 from .wavefront import MaterialLook, ObjSurface, Placing, looks_of, pictures_of, read_obj
 
 
@@ -65,7 +65,7 @@ def read_painted(path: Path) -> PaintedMesh:
     """
     mesh = read_mesh(path)
     if path.suffix.lower() == ".obj":
-        surface = read_obj(read_file(path, kind="mesh", most=100), most=MOST_VERTICES)
+        surface = read_obj(read_file(path, kind="mesh", most=100), most=MOST_FILE_VERTICES)
         return PaintedMesh(
             mesh,
             surface.uv,

@@ -16,7 +16,7 @@ from ..geometry.colour import to_linear
 
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
-SHADOW = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
+SHAVED_HAIR = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers64, Unsigned8
 from .topology import strip_triangles
-from .user_files import MOST_VERTICES, plain_text
+from .user_files import MOST_FILE_VERTICES, plain_text
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ class _Bytes:
 
 def _rows(element: _Element, body: _Numbers | _Bytes) -> dict[str, Any]:
     """The columns of an element by name: arrays (n,), or lists."""
-    if not 0 <= element.count <= 3 * MOST_VERTICES:
+    if not 0 <= element.count <= 3 * MOST_FILE_VERTICES:
         raise ValueError(f"{element.count} times '{element.name}' are too many")
     if element.count:
         start = body.place

@@ -9,8 +9,8 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32
 from .topology import grid_faces
 
-COLUMN_COUNT = 11  # cells along x; chosen: 2 * 7 * 11 = 154
-ROW_COUNT = 7  # along y
+SHEET_COLUMNS = 11  # cells along x; chosen: 2 * 7 * 11 = 154
+SHEET_ROWS = 7  # along y
 CELL_SIZE = 10.0  # [mm]; chosen, so that the plane is as large as a hand
 
 

@@ -12,14 +12,14 @@ from pathlib import Path, PureWindowsPath
 
 from .errors import AssetError
 
-MOST_VERTICES = 500_000  # of a mesh, and as many triangles: far more than can be simulated
+MOST_FILE_VERTICES = 500_000  # of a mesh, and as many triangles: far more than can be simulated
 # Readers split lines and words at more characters than the formats do, and guess encodings. All
 # content of the formats is ASCII; other characters only occur in names and remarks.
-_CONTROLS = bytes(code for code in (*range(0x20), 0x7F) if code not in b"\t\n\r")
+CONTROL_BYTES = bytes(code for code in (*range(0x20), 0x7F) if code not in b"\t\n\r")
 _NO_CONTROLS = bytes.maketrans(
-    _CONTROLS, bytes(ord(" " if code in b"\v\f" else "?") for code in _CONTROLS)
+    CONTROL_BYTES, bytes(ord(" " if code in b"\v\f" else "?") for code in CONTROL_BYTES)
 )
-_ASCII = bytes(code if code < 0x80 else ord("?") for code in range(256))
+ASCII_BYTES = bytes(code if code < 0x80 else ord("?") for code in range(256))
 
 
 def named(path: str | Path) -> str:
@@ -79,7 +79,7 @@ def plain_text(content: bytes) -> bytes:
 
     Raises AssetError for binary data.
     """
-    return text_with_names(content).translate(_ASCII)
+    return text_with_names(content).translate(ASCII_BYTES)
 
 
 def text_with_names(content: bytes) -> bytes:

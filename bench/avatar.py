@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from risorius.app.errors import UserError
 from risorius.app.performances import built_in_words
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.rig.avatar import Avatar, RigRequest, avatar_of
 from risorius.app.rig.gltf_copy import read_document
 from risorius.app.rig.linearity import Difference
-from risorius.app.rig.surface import METRES
+from risorius.app.rig.surface import METRES_PER_MILLIMETRE
 from risorius.app.rig.writing import avatar_glb
 from risorius.app.scenes import fit_users_head
 from risorius.assets.fitting import FittedHead
@@ -114,7 +114,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
     scene = avatar.scene
     rest = scene.rest_positions
     guess = guessed(name, Mesh(rest, scene.faces), rest[scene.landmarks])
-    return _row(guess, METRES * rest, points, names, content, seconds, avatar)
+    return _row(guess, METRES_PER_MILLIMETRE * rest, points, names, content, seconds, avatar)
 
 
 def measured_file(head: HeadFile) -> Row:
@@ -141,7 +141,7 @@ def _row(
     seconds: float,
     avatar: Avatar,
 ) -> Row:
-    shapes = sum(found == expected for found, expected in zip(names, ARKIT, strict=False))
+    shapes = sum(found == expected for found, expected in zip(names, ARKIT_SHAPES, strict=False))
     count = in_place(own, points)
     size = len(content) / 1e6
     return Row(guess.name, len(own), count, shapes, size, seconds, avatar.sums, guess)
@@ -206,5 +206,5 @@ def targets(rows: Sequence[Row]) -> list[Target]:
     found = []
     for row in rows:
         found.append(at_least(f"{row.name}, vertices in place", row.in_place, row.vertices))
-        found.append(at_least(f"{row.name}, names", row.shapes, len(ARKIT)))
+        found.append(at_least(f"{row.name}, names", row.shapes, len(ARKIT_SHAPES)))
     return found

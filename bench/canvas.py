@@ -12,17 +12,19 @@ import PIL.Image
 from PIL import ImageDraw
 
 from risorius import refine, render
-from risorius.app.capture.captions import INK, SHADE, font
+from risorius.app.capture.captions import INK_COLOUR, SHADE_COLOUR, font
 from risorius.app.pictures import Image
 from risorius.app.refining.drawn_mesh import DrawnMesh
 from risorius.app.scenes import Scene
-from risorius.assets.identities import HAIR
+from risorius.assets.identities import HAIR_NAME
 from risorius.geometry.arrays import Floats64
 
 Transforms = Mapping[str, Floats64]
-CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
-FLAT = replace(CLAY, shading=render.Shading.FLAT)
-GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
+CLAY_STYLE = render.Style(
+    textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE
+)
+FLAT_STYLE = replace(CLAY_STYLE, shading=render.Shading.FLAT)
+GOURAUD_STYLE = replace(CLAY_STYLE, shading=render.Shading.GOURAUD)
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ class Shot:
 
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:
     """The parts of a scene except hair, because hair hides the face's form."""
-    return tuple(part for part in scene.parts if not part.name.startswith(HAIR))
+    return tuple(part for part in scene.parts if not part.name.startswith(HAIR_NAME))
 
 
 def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
@@ -128,15 +130,17 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
     title = round(2.0 * size)
     caption_height = round(1.7 * size)
     whole = title + height + caption_height
-    page = PIL.Image.new("RGB", (columns * width, len(rows) * whole), SHADE)
+    page = PIL.Image.new("RGB", (columns * width, len(rows) * whole), SHADE_COLOUR)
     draw = ImageDraw.Draw(page)
     for k, (heading, cells) in enumerate(rows):
         top = k * whole
-        draw.text((0.6 * size, top + title / 2), heading, font=font(size), fill=INK, anchor="lm")
+        draw.text(
+            (0.6 * size, top + title / 2), heading, font=font(size), fill=INK_COLOUR, anchor="lm"
+        )
         for column, (caption, image) in enumerate(cells):
             left = column * width
             below = top + title + height
             page.paste(PIL.Image.fromarray(image), (left, top + title))
             middle = (left + width / 2, below + caption_height / 2)
-            draw.text(middle, caption, font=font(0.85 * size), fill=INK, anchor="mm")
+            draw.text(middle, caption, font=font(0.85 * size), fill=INK_COLOUR, anchor="mm")
     return np.asarray(page)

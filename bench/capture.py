@@ -17,7 +17,7 @@ import numpy as np
 
 from risorius.app.capture import CaptureOptions, capture, processes
 from risorius.app.performances import script_for
-from risorius.app.refining.presets import STATIC, Refinement
+from risorius.app.refining.presets import STATIC_REFINER, Refinement
 from risorius.app.script import Script
 
 from .canvas import Canvas
@@ -28,7 +28,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
     """Make films of `seconds` of the script; return the text to print."""
     whole = script_for(None, "face")
     script = replace(whole, duration=min(seconds, whole.duration), poses=whole.poses)
-    beside = (Refinement(refiner=STATIC),)
+    beside = (Refinement(refiner=STATIC_REFINER),)
     options = CaptureOptions(size=size, beside=beside, camera=script.camera)
     frame_count = round(script.duration * options.frames_per_second) + 1
     with Canvas((16, 16)) as canvas:

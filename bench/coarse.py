@@ -30,7 +30,7 @@ from risorius.geometry.normals import cross_products, vertex_normals
 from .report import table
 from .subjects import settled_positions
 
-POSES: tuple[Mapping[str, float], ...] = (
+MEASURED_POSES: tuple[Mapping[str, float], ...] = (
     {},
     {"joy": 1.0},
     {"blink": 0.5},
@@ -41,7 +41,7 @@ POSES: tuple[Mapping[str, float], ...] = (
     {"kiss": 0.7},
     {"disgust": 0.7},
 )
-SCHEMES = ("static", "loop", "cubic")
+COMPARED_SCHEMES = ("static", "loop", "cubic")
 FREE_GROUPS = ("above the mouth", "eyelids", "forehead", "cheeks")
 """Groups whose edges may be flipped: loops of lips and nostrils stay, and a chin without lumps."""
 LEAST_ANGLE = 14.0  # degrees
@@ -82,7 +82,7 @@ def surfaces() -> list[Surface]:
     splits = np.ones(edge_count, np.uint8)
     refiner = refine.create("kahler", head.faces, head.vertices, scheme="cubic", splits=splits)
     found = []
-    for pose in POSES:
+    for pose in MEASURED_POSES:
         vertices = settled_positions(simulation, pose, 40)
         mesh = refiner.refine(vertices)
         tree = scipy.spatial.cKDTree(mesh.positions.copy())
@@ -199,12 +199,12 @@ def _is_sound(tried: Layout, start: Layout, head: CoarseHead, outward: Floats64)
 def report(comparison: Comparison) -> str:
     """The table to print."""
     present = layout()
-    by_scheme = [comparison.angles(present, scheme) for scheme in SCHEMES]
+    by_scheme = [comparison.angles(present, scheme) for scheme in COMPARED_SCHEMES]
     rows = [(group, *(angles[group] for angles in by_scheme)) for group in by_scheme[0]]
     lines = [
         "Angle between normals of the coarse and of the built-in head [degrees], RMS over area",
-        f"and {len(POSES)} poses; loop, cubic: every edge is split twice.",
+        f"and {len(MEASURED_POSES)} poses; loop, cubic: every edge is split twice.",
         "",
-        *table("group:<18|" + "|".join(f"{scheme}:8.2f" for scheme in SCHEMES), rows),
+        *table("group:<18|" + "|".join(f"{scheme}:8.2f" for scheme in COMPARED_SCHEMES), rows),
     ]
     return "\n".join(lines)

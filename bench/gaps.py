@@ -37,11 +37,11 @@ from .subjects import settled_positions
 Triangles = npt.NDArray[Any]
 
 LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
-YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
-PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
-VIEWS = tuple(  # the whole range of the cameras
+CAMERA_YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
+CAMERA_PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
+CAMERA_ANGLES = tuple(  # the whole range of the cameras
     (yaw, pitch)
-    for yaw, pitch in itertools.product(YAWS, PITCHES)
+    for yaw, pitch in itertools.product(CAMERA_YAWS, CAMERA_PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
 )
 
@@ -149,14 +149,14 @@ def meshes_of(
 
 
 def widest_slit(positions: Floats64, triangles: Triangles, landmarks: Floats64) -> float:
-    """Greatest height [mm] of a visible slit between the lips, in any of VIEWS.
+    """Greatest height [mm] of a visible slit between the lips, in any of CAMERA_ANGLES.
 
     landmarks: the 68 points in this pose, (68, 3) [mm].
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
     mouth_radius = 60.0  # mm around the mouth's middle in which skin may cover it
     near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, mouth_radius)
-    turns = [_turned_by(*view) for view in VIEWS]
+    turns = [_turned_by(*view) for view in CAMERA_ANGLES]
     return max(opening(near @ turn.T, lip @ turn.T) for turn in turns)
 
 
@@ -181,13 +181,13 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Floats64]:
 def lid_gaps(
     positions: Floats64, triangles: Triangles, landmarks: Floats64, eyeballs: Mapping[str, Floats64]
 ) -> dict[str, float]:
-    """Greatest height [mm] of each eyeball, or of open space beside it, visible in any of VIEWS.
+    """Greatest height [mm] of each eyeball, or of open space beside it, from CAMERA_ANGLES.
 
     A place is visible if no skin is in front of it. It may be visible between the lids, or where
     the cornea pierces a lid. `landmarks`: the 68 points in this pose, (68, 3) [mm]; `eyeballs`: see
     `eyeballs_of`. The keys of the result are the sides of the eyes.
     """
-    turns = [_turned_by(*view) for view in VIEWS]
+    turns = [_turned_by(*view) for view in CAMERA_ANGLES]
     gaps = {}
     eye_radius = 100.0  # mm around the eye's middle in which skin may cover it
     eye_corners = {"right": (36, 39), "left": (42, 45)}  # landmarks

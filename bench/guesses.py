@@ -14,9 +14,9 @@ from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64
 
 from .report import table
-from .subjects import GROUPS
+from .subjects import LANDMARK_GROUPS
 
-PERSONS = (7, 63)
+PERSON_NUMBERS = (7, 63)
 
 
 class Guess(NamedTuple):
@@ -42,7 +42,9 @@ def guessed(name: str, mesh: Mesh, true: Floats64) -> Guess:
 def persons_turned() -> list[Guess]:
     """The guesses for two made persons in metres, lying on a side and upside down."""
     found = []
-    for number, degrees in zip(PERSONS, ((0.0, 20.0, 90.0), (150.0, -35.0, 10.0)), strict=True):
+    for number, degrees in zip(
+        PERSON_NUMBERS, ((0.0, 20.0, 90.0), (150.0, -35.0, 10.0)), strict=True
+    ):
         person = person_called(number)
         turn = scipy.spatial.transform.Rotation.from_euler("xyz", degrees, degrees=True)
         vertices = 0.001 * turn.apply(np.array(person.vertices)) + (3.0, -2.0, 1.5)
@@ -55,10 +57,12 @@ def lines_of(guesses: Sequence[Guess]) -> list[str]:
     """The table to print: median and worst error without the jaw, and each group's mean."""
     rows = []
     for each in guesses:
-        own = each.off[GROUPS["jaw"].stop :]
-        groups = [each.off[numbers].mean() for name, numbers in GROUPS.items() if name != "all"]
+        own = each.off[LANDMARK_GROUPS["jaw"].stop :]
+        groups = [
+            each.off[numbers].mean() for name, numbers in LANDMARK_GROUPS.items() if name != "all"
+        ]
         rows.append((each.name, np.median(own), own.max(), *groups))
-    columns = "|".join(f"{name}:6.1f" for name in GROUPS if name != "all")
+    columns = "|".join(f"{name}:6.1f" for name in LANDMARK_GROUPS if name != "all")
     return [
         "Landmarks guessed from five true points, off [mm]: median and worst without the jaw,",
         "and means of groups.",

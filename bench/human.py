@@ -31,14 +31,14 @@ from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .report import Target, at_most, table
-from .subjects import DENSE_FILE, MILLIMETRES, MODES_FILE, Faces, Points, read_arrays
+from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, Faces, Points, read_arrays
 
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
 
 # [mm] Largest RMS distance of the finer mesh.
 MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
-REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
+REGION_NAMES = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,10 @@ class IdentitySpace:
         if modes.shape != (len(modes), *face["vertices"].shape):
             raise UserError(f"{folder / MODES_FILE}: 'modes' must move each vertex of {DENSE_FILE}")
         return cls(
-            MILLIMETRES * face["vertices"].astype(np.float64),
+            MILLIMETRES_PER_CENTIMETRE * face["vertices"].astype(np.float64),
             face["triangles"].astype(np.int32),
             face["landmarks68"].astype(np.int32),
-            MILLIMETRES * modes.astype(np.float64),
+            MILLIMETRES_PER_CENTIMETRE * modes.astype(np.float64),
         )
 
     def person(self, weights: Points) -> Points:
@@ -216,7 +216,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     near = np.linalg.norm(away, axis=1) < farthest_distance
     distance = (away * facing).sum(axis=1)
     angle = np.degrees(np.arccos(cosine))
-    groups = {name: near & (labels[asked] == name) for name in REGIONS} | {"all": near}
+    groups = {name: near & (labels[asked] == name) for name in REGION_NAMES} | {"all": near}
     return Rest(
         weights,
         {name: _rms(distance[group]) for name, group in groups.items()},
@@ -265,7 +265,7 @@ def report(found: Mapping[str, Rest]) -> str:
             region,
             *(x for each in found.values() for x in (each.distances[region], each.angles[region])),
         )
-        for region in (*REGIONS, "all")
+        for region in (*REGION_NAMES, "all")
     ]
     lines = [
         "Distance of the head from the nearest person: RMS along its normals [mm] and median angle",

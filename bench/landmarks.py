@@ -32,15 +32,15 @@ from risorius.app.extras import optional_import
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 
 from .report import Target, at_most, table
 from .seen import face_landmarker
-from .subjects import GROUPS
+from .subjects import LANDMARK_GROUPS
 
 Detector = Callable[[Image], Floats64 | None]
 
-DETECTORS = {"dlib": "dlib", "mediapipe": "MediaPipe"}
+DETECTOR_TITLES = {"dlib": "dlib", "mediapipe": "MediaPipe"}
 # The points of the face's right side.
 RIGHT_LANDMARKS = {
     *range(8),
@@ -93,7 +93,7 @@ class Finding:
         if not self.is_frontal.any():
             return np.full((68, 2), np.nan)
         mean = self.errors[self.is_frontal].mean(axis=0)
-        return np.asarray(0.5 * (mean + mean[MIRRORED] * [-1.0, 1.0]))
+        return np.asarray(0.5 * (mean + mean[MIRRORED_LANDMARKS] * [-1.0, 1.0]))
 
 
 def is_installed(detector: str) -> bool:
@@ -103,7 +103,7 @@ def is_installed(detector: str) -> bool:
 
 @contextlib.contextmanager
 def opened(detector: str, model: Path | None) -> Iterator[Detector]:
-    """Open a detector of `DETECTORS` with its model; raises UserError for a missing or wrong file.
+    """Open a detector of `DETECTOR_TITLES` with its model; UserError for a missing or wrong file.
 
     The detector takes a picture (H, W, 3) and returns its 68 points, shape (68, 2) [pixels, the
     middle of the first pixel is 0.5], or None if it finds no face.
@@ -179,7 +179,7 @@ def points_of_mesh(mesh: Floats64) -> Floats64:
     for number, place in right.items():
         points[number] = place
     for number, place in left.items():
-        points[MIRRORED[number]] = place
+        points[MIRRORED_LANDMARKS[number]] = place
     return points
 
 
@@ -271,17 +271,22 @@ def report(finding: Finding) -> str:
     """The text to print."""
     frontal = finding.is_frontal
     rows = []
-    for name, numbers in GROUPS.items():
+    for name, numbers in LANDMARK_GROUPS.items():
         largest = np.linalg.norm(finding.constant[numbers], axis=1).max()
         of_group = finding.distances[:, numbers]
         rows.append((name, _mean(of_group), _mean(of_group[frontal]), largest))
     offsets = [
-        (f"{MIRRORED[number]}, {number}" if MIRRORED[number] != number else str(number), *offset)
+        (
+            f"{MIRRORED_LANDMARKS[number]}, {number}"
+            if MIRRORED_LANDMARKS[number] != number
+            else str(number),
+            *offset,
+        )
         for number, offset in enumerate(finding.constant)
         if number not in RIGHT_LANDMARKS and np.hypot(*offset) > MOST_CONSTANT
     ]
     lines = [
-        f"{finding.picture_count} pictures; {DETECTORS[finding.detector]} finds a face in "
+        f"{finding.picture_count} pictures; {DETECTOR_TITLES[finding.detector]} finds a face in "
         f"{len(finding.yaw)}, {frontal.sum()} of them frontal (yaw below {MOST_YAW:g} degrees)",
         "mean distance from the labels, in percent of the distance of the outer eye corners",
         "",

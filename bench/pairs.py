@@ -24,7 +24,7 @@ from risorius.app.extras import optional_import
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.refine.mesh import threads
 
-from .refine import RULES, Load, Points, interleaved, load_of
+from .refine import OPTIONS_OF_RULES, Load, Points, interleaved, load_of
 from .report import processor, table
 
 Progress = Callable[[str], object]
@@ -83,11 +83,11 @@ def by_threads(
     for size in sizes or ("20k", "200k", "1M"):
         progress(size)
         load = load_of(size)
-        for rule, options in RULES.items():
+        for rule, options in OPTIONS_OF_RULES.items():
             refiner = refine.create("kahler", load.faces, load.rest, **options)
             calls = [partial(_refine, refiner, each) for each in (1, count)]
             try:
-                rows.append(timed_pair(load, rule, calls, seconds / len(RULES)))
+                rows.append(timed_pair(load, rule, calls, seconds / len(OPTIONS_OF_RULES)))
             finally:
                 threads.THREAD_COUNT = count
     return rows

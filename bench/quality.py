@@ -2,11 +2,12 @@
 
 A coarse and a dense mesh of a face move in the same way (subjects.py). The pairs are the built-in
 head and its mesh with 16 times the triangles, or a decimated scan and the scan itself. The coarse
-mesh is refined by all methods of METHODS, and three errors are reported:
+mesh is refined by all methods of MEASURED_METHODS, and three errors are reported:
 
     distance   RMS distance from every dense vertex to the exactly nearest point of the refined mesh
     picture    RMS difference in grey levels from pictures of the dense mesh. Both meshes are drawn
-               from VIEWS as plain clay without texture or shadows, shaded by the mesh's normals
+               from MEASURED_VIEWS as plain clay without texture or shadows, shaded by the mesh's
+               normals
     outline    pixels that only one of the two meshes covers. Pictures are drawn SUPERSAMPLING times
                larger, so that an error of a fraction of a pixel counts as this fraction
 
@@ -32,27 +33,27 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
 
-from .canvas import CLAY, Canvas, Drawing
+from .canvas import CLAY_STYLE, Canvas, Drawing
 from .report import Target, at_least, table
 from .subjects import Points, Subject
 
 Mesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
 
-SIZE = 480  # width and height of a picture [pixels]
+PICTURE_SIDE = 480  # width and height of a picture [pixels]
 SUPERSAMPLING = 2
-VIEWS = ("front", "three-quarter", "profile")
-STATIC = "static"
+MEASURED_VIEWS = ("front", "three-quarter", "profile")
+STATIC_METHOD = "static"
 BEST_METHOD = "cubic displacement 2x"
-_PRESET = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
+PRESET_OPTIONS = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
 
 
 def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
     return "sliding", {"scheme": scheme, "criterion": refine.Displacement, **more}
 
 
-METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
-    STATIC: ("none", {}),
+MEASURED_METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
+    STATIC_METHOD: ("none", {}),
     "loop normal 2x": _sliding("loop", criterion=refine.NormalDrop),
     BEST_METHOD: _sliding("cubic", blend=False),
     "cubic displacement, blended 2x": _sliding("cubic", blend=True),
@@ -60,7 +61,7 @@ METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     "detail displacement, blended 2x": _sliding("detail", blend=True),
     f"{FIRST_PRESET}, as set": (
         "kahler",
-        {"scheme": _PRESET["scheme"], "criterion": _PRESET["criterion"]},
+        {"scheme": PRESET_OPTIONS["scheme"], "criterion": PRESET_OPTIONS["criterion"]},
     ),
     "cubic once": ("everywhere", {"scheme": "cubic", "splits": 1}),
     "cubic twice": ("everywhere", {"scheme": "cubic", "splits": 2}),
@@ -100,7 +101,7 @@ def measure(
     subject: Subject,
     expressions: Collection[str] = (),
     progress: Callable[[str], object] = lambda _: None,
-    methods: Collection[str] = tuple(METHODS),
+    methods: Collection[str] = tuple(MEASURED_METHODS),
 ) -> list[Score]:
     """Score methods in the named expressions of a subject, or in all.
 
@@ -108,9 +109,9 @@ def measure(
     """
     scores = []
     shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
-    cameras = [render.OrbitCamera.framing(shown, view=view) for view in VIEWS]
-    bound = {title: _bound(subject, *METHODS[title]) for title in methods}
-    with Canvas((SIZE * SUPERSAMPLING, SIZE * SUPERSAMPLING), samples=0) as canvas:
+    cameras = [render.OrbitCamera.framing(shown, view=view) for view in MEASURED_VIEWS]
+    bound = {title: _bound(subject, *MEASURED_METHODS[title]) for title in methods}
+    with Canvas((PICTURE_SIDE * SUPERSAMPLING, PICTURE_SIDE * SUPERSAMPLING), samples=0) as canvas:
         for name in expressions or subject.poses:
             progress(name)
             pose = subject.poses[name]
@@ -173,11 +174,11 @@ def _refined_to_count(
 def _grey_pictures(
     canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
 ) -> tuple[Points, Flags]:
-    """Grey levels over the background (views, SIZE, SIZE), and flags of covered fine pixels.
+    """Grey levels over the background (views, N, N), and flags of covered fine pixels.
 
-    The flags have shape (views, S, S), where S = SUPERSAMPLING * SIZE.
+    N = PICTURE_SIDE. The flags have shape (views, S, S), where S = SUPERSAMPLING * N.
     """
-    on_black = replace(CLAY, bumps=0.0, background=render.BLACK)
+    on_black = replace(CLAY_STYLE, bumps=0.0, background=render.BLACK)
     drawings = [Drawing(camera, on_black) for camera in cameras]
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
@@ -191,13 +192,15 @@ def _differences(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tu
     (grey, covered) = shots
     (true_grey, true_covered) = truth
     either = _block_means(covered | true_covered) > 0.0
-    wrong = np.count_nonzero(covered != true_covered) / SUPERSAMPLING**2 / len(VIEWS)
+    wrong = np.count_nonzero(covered != true_covered) / SUPERSAMPLING**2 / len(MEASURED_VIEWS)
     return float(np.sqrt(((grey - true_grey)[either] ** 2).mean())), wrong
 
 
 def _block_means(fine: npt.NDArray[Any]) -> Points:
     """Average the fine pixels of each pixel."""
-    return np.asarray(fine.reshape(-1, SIZE, SUPERSAMPLING, SIZE, SUPERSAMPLING).mean(axis=(2, 4)))
+    return np.asarray(
+        fine.reshape(-1, PICTURE_SIDE, SUPERSAMPLING, PICTURE_SIDE, SUPERSAMPLING).mean(axis=(2, 4))
+    )
 
 
 def means(scores: Sequence[Score]) -> dict[str, Score]:
@@ -212,7 +215,7 @@ def means(scores: Sequence[Score]) -> dict[str, Score]:
 def report(scores: Sequence[Score]) -> str:
     """The text to print."""
     average = means(scores)
-    static = average[STATIC]
+    static = average[STATIC_METHOD]
     rows = [
         (
             *(method, found.triangles),
@@ -242,7 +245,7 @@ def targets(scores: Sequence[Score]) -> list[Target]:
     """The targets of the scheme `cubic` with `displacement`, at twice the triangles."""
     average = means(scores)
     names = ("distance", "picture")
-    gains = {name: _gain(average[BEST_METHOD], average[STATIC], name) for name in names}
+    gains = {name: _gain(average[BEST_METHOD], average[STATIC_METHOD], name) for name in names}
     least_gain = 20.0  # [%] of the error of static
     return [
         at_least(f"{name}: less than static", gain, least_gain, " %")

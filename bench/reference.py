@@ -5,7 +5,8 @@ same topology: neutral, in many expressions, and moved along each of its princip
 identity. The first 9409 vertices of each file are the face. The written files, in centimetres, are:
 
     face.npz            vertices (V, 3), triangles (F, 3), landmarks68 (68,), and for each
-                        expression of SHAPES how far its vertices move at full strength (V, 3)
+                        expression of MEASURED_SHAPES how far its vertices move at full strength
+                        (V, 3)
     identity_modes.npz  modes (k, V, 3): displacement by each component at one standard deviation
     LICENSE             a copy of the checkout's licence
 """
@@ -31,19 +32,19 @@ from .subjects import DENSE_FILE, MODES_FILE
 
 Points = npt.NDArray[np.float64]
 
-MODEL = "FaceXModel"
+MODEL_FOLDER = "FaceXModel"
 FACE_VERTICES = 9409
-BOTH_SIDES = (
+SIDED_SHAPES = (
     *("browInnerUp", "browDown", "noseSneer", "eyeBlink", "mouthFrown", "mouthStretch"),
     *("mouthLowerDown", "cheekPuff", "eyeSquint", "eyeWide"),
 )
-SHAPES = (
+MEASURED_SHAPES = (
     *("mouthSmile_L", "mouthSmile_R", "jawOpen"),
-    *(f"{name}_{side}" for name in BOTH_SIDES for side in "LR"),
+    *(f"{name}_{side}" for name in SIDED_SHAPES for side in "LR"),
     *("mouthPucker", "jawLeft", "mouthFunnel", "mouthRollLower"),
 )
 """The expressions for measurements."""
-LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
+LANDMARK_LIST = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
 """The heading of the 68 vertex indices in the checkout's README."""
 
 
@@ -66,9 +67,11 @@ def make(checkout: Path, folder: Path) -> list[str]:
             raise UserError(f"{checkout}: {name} has other vertices than the neutral head")
         return (positions - head)[: len(neutral)].astype(np.float32)
 
-    fields = {name: moved(name) for name in SHAPES if _file(checkout, name) is not None}
+    fields = {name: moved(name) for name in MEASURED_SHAPES if _file(checkout, name) is not None}
     if not fields:
-        raise UserError(f"{checkout / MODEL}: has none of the expressions {', '.join(SHAPES)}")
+        raise UserError(
+            f"{checkout / MODEL_FOLDER}: has none of the expressions {', '.join(MEASURED_SHAPES)}"
+        )
     arrays: dict[str, Mapping[str, npt.NDArray[np.generic]]] = {
         DENSE_FILE: {
             "vertices": neutral.astype(np.float32),
@@ -86,7 +89,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
     if (checkout / licence_file).is_file():
         with written_atomically(folder / licence_file) as part:
             part.write_bytes((checkout / licence_file).read_bytes())
-    missing = [name for name in SHAPES if name not in fields]
+    missing = [name for name in MEASURED_SHAPES if name not in fields]
     return [
         *(f"{folder / name}: {', '.join(content)}" for name, content in arrays.items()),
         *([f"not in the checkout: {', '.join(missing)}"] if missing else []),
@@ -95,7 +98,7 @@ def make(checkout: Path, folder: Path) -> list[str]:
 
 def _file(checkout: Path, name: str) -> Path | None:
     """Path of the OBJ file with this name, compressed or not."""
-    files = (checkout / MODEL / f"{name}{suffix}" for suffix in (".obj", ".obj.gz"))
+    files = (checkout / MODEL_FOLDER / f"{name}{suffix}" for suffix in (".obj", ".obj.gz"))
     return next((file for file in files if file.is_file()), None)
 
 
@@ -104,7 +107,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
     file = _file(checkout, name)
     if file is None:
         raise UserError(
-            f"{checkout}: has no {MODEL}/{name}.obj; it must be a checkout of ICT-FaceKit"
+            f"{checkout}: has no {MODEL_FOLDER}/{name}.obj; it must be a checkout of ICT-FaceKit"
         )
     try:
         content = file.read_bytes()
@@ -119,7 +122,7 @@ def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
 
 def _landmarks(readme: Path) -> Integers32:
     """The 68 landmarks as vertex indices, from the checkout's README."""
-    found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
+    found = LANDMARK_LIST.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:
         raise UserError(f"{readme}: has no list of 68 landmarks; use a checkout of ICT-FaceKit")
     return np.array(found[0].split(","), dtype=np.int32)

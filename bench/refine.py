@@ -44,10 +44,13 @@ from .subjects import SETTLING_FRAMES, settled_positions
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-SIZES = ("face", "20k", "200k", "1M")
+DEFAULT_MESHES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
-RULES: Mapping[str, Mapping[str, Any]] = {"paper's rule": {}, "window's look": WINDOWS_LOOK}
+OPTIONS_OF_RULES: Mapping[str, Mapping[str, Any]] = {
+    "paper's rule": {},
+    "window's look": WINDOWS_LOOK,
+}
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ class _Case(NamedTuple):
 
 
 def measure(
-    sizes: Sequence[str] = SIZES,
+    sizes: Sequence[str] = DEFAULT_MESHES,
     seconds: float = 7.0,
     progress: Callable[[str], object] = lambda _: None,
     *,
@@ -196,7 +199,7 @@ def _waving_cases(load: Load) -> list[_Case]:
 def _card_cases(load: Load) -> list[_Case]:
     """The paper's rule and the window's look, on the processor and on the graphics card."""
     cases = []
-    for title, options in RULES.items():
+    for title, options in OPTIONS_OF_RULES.items():
         card = refine.create("kahler-gl", load.faces, load.rest, **options)
         if not isinstance(card, KahlerGl):
             raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` shows more")

@@ -173,4 +173,4 @@ def _table() -> list[Method]:
     ]
 
 
-METHODS: Sequence[Method] = tuple(_table())
+RIVAL_METHODS: Sequence[Method] = tuple(_table())

@@ -28,12 +28,12 @@ from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.scenes import PlaneScene
-from risorius.assets.sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
+from risorius.assets.sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
 from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
 from .report import processor, table
-from .rival_libraries import METHODS, Faces, Frame, Method, Points, Surface
+from .rival_libraries import RIVAL_METHODS, Faces, Frame, Method, Points, Surface
 from .subjects import Subject
 
 TRIANGLE_RATIO = 4.0
@@ -97,7 +97,7 @@ def _unrefined(faces: Faces, rest: Points) -> Frame:
     return _Frame(refine.create("none", faces, rest), None)
 
 
-_BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
+OWN_BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
     "not refined": _unrefined,
     "cubic where a split moves most": _adaptive,
     "cubic, all edges": partial(_everywhere, scheme="cubic"),
@@ -105,7 +105,7 @@ _BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
 }
 OWN_METHODS: Sequence[Method] = tuple(
     Method(f"risorius, {title}", "risorius", "risorius.refine", bind, bind is _adaptive)
-    for title, bind in _BINDINGS.items()
+    for title, bind in OWN_BINDINGS.items()
 )
 
 
@@ -121,7 +121,7 @@ def cases(subjects: Sequence[tuple[str, Subject]]) -> Iterator[Case]:
     plane.pose({"amplitude": 1.0})
     plane.step(1.0 / 30.0)
     fineness = 12  # cells of the true sine per cell of the plane, in each direction
-    flat, _ = make_grid(COLUMN_COUNT * fineness, ROW_COUNT * fineness, CELL_SIZE / fineness)
+    flat, _ = make_grid(SHEET_COLUMNS * fineness, SHEET_ROWS * fineness, CELL_SIZE / fineness)
     sine, _ = plane.waved(flat)
     yield Case("sine plane", plane.faces, plane.rest_positions, plane.positions.copy(), sine)
 
@@ -137,7 +137,7 @@ def available() -> tuple[list[Method], list[str]]:
     """Our methods, the methods of installed libraries, and a line for each missing library."""
     found = list(OWN_METHODS)
     skipped = {}
-    for method in METHODS:
+    for method in RIVAL_METHODS:
         try:
             optional_import(method.module, method.package, "rivals", package=method.package)
         except UserError as error:

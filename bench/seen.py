@@ -2,9 +2,9 @@
 
 A shape should be recognised by an independent tracker: MediaPipe's face landmarker (Google,
 Apache-2.0) finds a face in a picture and scores each of ARKit's shapes, 0 to 1, except `tongueOut`.
-Users supply the model file face_landmarker.task. Each shape is drawn from VIEWS, and each picture
-is also mirrored, so that differences between the tracker's left and right cancel out. The report
-lists mean scores minus those of the neutral face:
+Users supply the model file face_landmarker.task. Each shape is drawn from TRACKED_VIEWS, and each
+picture is also mirrored, so that differences between the tracker's left and right cancel out. The
+report lists mean scores minus those of the neutral face:
 
     own      score of the shape itself; both sides of a pair are posed, and their mean counts
     highest  the other shape with the highest score, and this score; a pair's score is its mean
@@ -31,7 +31,7 @@ from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.motion import SETTLING_TIME
 from risorius.app.pictures import Image
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.scenes import FaceScene
 
 from .report import table
@@ -39,8 +39,8 @@ from .report import table
 Scores = dict[str, float]
 Tracker = Callable[[Image], Scores]
 
-VIEWS = ("front", "-8,0", "8,0")  # as of people in front of a camera
-SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
+TRACKED_VIEWS = ("front", "-8,0", "8,0")  # as of people in front of a camera
+PICTURE_SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 
 
 @contextlib.contextmanager
@@ -125,13 +125,13 @@ class Shape(NamedTuple):
 
 
 def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> Scores:
-    """Scores with `controls` at 1, averaged over VIEWS and their mirror images."""
+    """Scores with `controls` at 1, averaged over TRACKED_VIEWS and their mirror images."""
     scene = studio.scene
     scene.reset()
     scene.pose(dict.fromkeys(controls, 1.0))
     scene.step(SETTLING_TIME)
     found = []
-    for view in VIEWS:
+    for view in TRACKED_VIEWS:
         studio.camera = camera_for(scene, view)
         image = studio.draw_image()
         mirrored = tracker(image[:, ::-1])
@@ -143,7 +143,7 @@ def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> S
 
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every shape of ARKit: the name without side, and the names with sides."""
-    for name in ARKIT:
+    for name in ARKIT_SHAPES:
         stem, side = split_side(name)
         if not side:
             yield name, (name,)
@@ -162,7 +162,7 @@ def compared(
     mean, or the greater one of its scores if only one side was posed.
     """
     is_sided = len(own) == 1 and twin_of(own[0]) != own[0]
-    over = {name: scores[name] - neutral[name] for name in scores if name in ARKIT}
+    over = {name: scores[name] - neutral[name] for name in scores if name in ARKIT_SHAPES}
     others: dict[str, float] = {}
     for base, sides in bases():
         found = [over[side] for side in sides if side in over]
@@ -176,7 +176,7 @@ def compared(
 def measure(tracker: Tracker) -> dict[str, Shape]:
     """Show every shape of the built-in head to the tracker; return scores by name without side."""
     shapes = {}
-    with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
+    with Capture(FaceScene(), CaptureOptions(size=PICTURE_SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
         # The keys are shapes whose sides cannot be posed together, or that need another shape. The
         # values are shapes posed with them: both eyes look aside together, and lips close over an
@@ -208,7 +208,8 @@ def report(shapes: Mapping[str, Shape]) -> str:
     return "\n".join(
         [
             "Every shape at 1 on the built-in head, as a face tracker scores it over the neutral",
-            f"face: mean of {len(VIEWS)} views and their mirror images; pairs are posed together.",
+            f"face: mean of {len(TRACKED_VIEWS)} views and their mirror images; pairs are posed "
+            "together.",
             "",
             *table("shape:<17|own:6.2f| highest:<19|score:6.2f| verdict:<1", rows),
             "",

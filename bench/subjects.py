@@ -31,13 +31,13 @@ from risorius.geometry.closest import closest_points
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-MILLIMETRES = 10.0  # per centimetre, the unit of a folder of scans
+MILLIMETRES_PER_CENTIMETRE = 10.0  # per centimetre, the unit of a folder of scans
 DENSE_FILE = "face.npz"
 MODES_FILE = "identity_modes.npz"
 SETTLING_FRAMES = 90  # frames of 1/60 s until a pose is still
 COARSE_TRIANGLES = 2029  # of a decimated scan, about as many as in the built-in head
 # Landmarks by region of the face.
-GROUPS = {
+LANDMARK_GROUPS = {
     "jaw": slice(0, 17),
     "brows": slice(17, 27),
     "nose": slice(27, 36),
@@ -77,9 +77,11 @@ class Scans:
             if end in side_names:
                 is_whole = all(f"{stem}{each}" in arrays for each in side_names)
                 name = stem if is_whole else stem + side_names[end]
-            moved = MILLIMETRES * array.astype(np.float64)
+            moved = MILLIMETRES_PER_CENTIMETRE * array.astype(np.float64)
             fields[name] = fields.get(name, np.zeros_like(moved)) + moved
-        mesh = Mesh(MILLIMETRES * vertices.astype(np.float64), triangles.astype(np.int32))
+        mesh = Mesh(
+            MILLIMETRES_PER_CENTIMETRE * vertices.astype(np.float64), triangles.astype(np.int32)
+        )
         return cls(mesh, landmarks.astype(np.int32), fields)
 
     @cached_property

@@ -17,7 +17,7 @@ from risorius.app.performances import script_for
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture.stage import LevelOfDetail
-from risorius.app.viewer.session.physics import PHASES
+from risorius.app.viewer.session.physics import PHASE_NAMES
 from risorius.app.viewer.settings import Display
 from risorius.assets.fitting import FittedHead
 from risorius.geometry.arrays import Floats64
@@ -64,7 +64,8 @@ def measure(
         "",
         *table(
             "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|processor:9.1f|"
-            f"{PHASES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASES[1:])}|the rest:9.1f",
+            f"{PHASE_NAMES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASE_NAMES[1:])}|"
+            "the rest:9.1f",
             [_cells(name, np.array(frames)) for name, frames in seen.items()],
         ),
         "",
@@ -106,7 +107,7 @@ def _run(viewer: Viewer, seconds: float) -> Frames:
         viewer.frame()
         now = time.perf_counter()
         spent = time.process_time()
-        stages = [viewer.context.times.milliseconds[stage][-1] for stage in PHASES]
+        stages = [viewer.context.times.milliseconds[stage][-1] for stage in PHASE_NAMES]
         frames.append([now - last, spent - used, *stages])
         last = now
         used = spent

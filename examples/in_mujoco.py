@@ -19,13 +19,13 @@ from risorius.geometry.closest import closest_points
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-CELLS = 8
-SIDE = 2.0  # [m]
+CELL_COUNT = 8
+CLOTH_SIDE = 2.0  # [m]
 
 
 def cloth(cells: int) -> mujoco.MjSpec:
     """A sheet of cells x cells squares, whose border is pinned."""
-    spacing = SIDE / cells
+    spacing = CLOTH_SIDE / cells
     return mujoco.MjSpec.from_string(
         f"""
         <mujoco>
@@ -99,11 +99,11 @@ def sagged(spec: mujoco.MjSpec) -> tuple[Points, Points]:
 
 def main() -> dict[str, float]:
     """Compute root mean square distances from the finer simulation [mm]."""
-    finer = cloth(2 * CELLS)
+    finer = cloth(2 * CELL_COUNT)
     fine, triangles = sheet_of(finer.compile())
     truth, _ = sagged(finer)
 
-    coarse = cloth(CELLS)
+    coarse = cloth(CELL_COUNT)
     rest, faces = sheet_of(coarse.compile())
     embedding = refine.Embedding(faces, rest, fine)  # once
     add_skin(coarse, fine, triangles)
@@ -124,7 +124,8 @@ def main() -> dict[str, float]:
 
 if __name__ == "__main__":
     print(
-        f"MuJoCo {mujoco.__version__}: root mean square distance from {4 * 2 * CELLS**2} triangles"
+        f"MuJoCo {mujoco.__version__}: root mean square distance from {4 * 2 * CELL_COUNT**2} "
+        "triangles"
     )
     for name, distance in main().items():
         print(f"  {name}: {distance:.1f} mm")

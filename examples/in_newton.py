@@ -18,8 +18,8 @@ from risorius import refine
 
 Points = npt.NDArray[np.float64]
 
-CELLS = 8
-SIDE = 2.0  # [m]
+CELL_COUNT = 8
+CLOTH_SIDE = 2.0  # [m]
 
 
 def cloth(cells: int) -> newton.ModelBuilder:
@@ -31,8 +31,8 @@ def cloth(cells: int) -> newton.ModelBuilder:
         vel=wp.vec3(0.0, 0.0, 0.0),
         dim_x=cells,
         dim_y=cells,
-        cell_x=SIDE / cells,
-        cell_y=SIDE / cells,
+        cell_x=CLOTH_SIDE / cells,
+        cell_y=CLOTH_SIDE / cells,
         mass=1.0 / (cells + 1) ** 2,
         fix_left=True,
         fix_right=True,
@@ -63,12 +63,12 @@ def sagged(model: newton.Model) -> newton.State:
 
 def main() -> dict[str, float]:
     """Compute root mean square distances from the finer simulation [mm]."""
-    finer = cloth(2 * CELLS).finalize(device="cpu")
+    finer = cloth(2 * CELL_COUNT).finalize(device="cpu")
     fine = finer.particle_q.numpy().astype(np.float64)
     triangles = finer.tri_indices.numpy()
     truth = sagged(finer).particle_q.numpy().astype(np.float64)
 
-    builder = cloth(CELLS)
+    builder = cloth(CELL_COUNT)
     count = len(builder.tri_indices)
     builder.add_deformable_visual_mesh(
         fine, triangles.ravel(), kind="triangle", tri_range=(0, count)
@@ -96,7 +96,7 @@ def main() -> dict[str, float]:
 
 if __name__ == "__main__":
     distances = main()
-    finer_count = 8 * CELLS**2
+    finer_count = 8 * CELL_COUNT**2
     print(f"Newton {newton.__version__}: root mean square distance from {finer_count} triangles")
     for name, distance in distances.items():
         print(f"  {name}: {distance:.1f} mm")

@@ -21,7 +21,7 @@ from risorius.faces import Faces
 
 Face = tuple[np.ndarray, np.ndarray]  # a picture (3, 144, 144) 0..255, points (68, 2) from -1 to 1
 
-SIDE = 96  # side of the network's pictures [pixels]
+PICTURE_SIDE = 96  # side of the network's pictures [pixels]
 STORED_SIDE = 144  # side of stored pictures, in which the network's pictures are turned and moved
 
 
@@ -35,7 +35,7 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
     high = points[17:].max(axis=0)
     size = (high - low).max()
     middle = 0.5 * (low + high) + [0.0, 0.15 * size]  # the chin is below
-    half = 0.85 * size * STORED_SIDE / SIDE
+    half = 0.85 * size * STORED_SIDE / PICTURE_SIDE
     factor = max(round(2.0 * half / STORED_SIDE), 1)
     small = np.asarray(picture.convert("RGB").reduce(factor))
     height, width = small.shape[:2]

@@ -17,7 +17,7 @@ from risorius import refine
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-LENGTH = 8.0
+TUBE_LENGTH = 8.0
 
 
 def tube() -> tuple[Points, Faces]:
@@ -25,7 +25,7 @@ def tube() -> tuple[Points, Faces]:
     around = 12  # cells of the tube
     along = 16
     angles = 2.0 * np.pi * np.arange(around) / around
-    heights = LENGTH * np.linspace(0.0, 1.0, along + 1)
+    heights = TUBE_LENGTH * np.linspace(0.0, 1.0, along + 1)
     height, angle = np.meshgrid(heights, angles, indexing="ij")
     vertices = np.stack([np.cos(angle), height, -np.sin(angle)], axis=2)  # radius 1
     ring, k = np.meshgrid(np.arange(along), np.arange(around), indexing="ij")
@@ -39,7 +39,7 @@ def tube() -> tuple[Points, Faces]:
 
 def bent(rest: Points, angle: float) -> Points:
     """The tube bent to an arc of `angle` [radians]."""
-    curvature = max(angle, 1e-9) / LENGTH
+    curvature = max(angle, 1e-9) / TUBE_LENGTH
     turn = curvature * rest[:, 1]
     across = 1.0 / curvature - rest[:, 0]  # distance from the middle of the arc
     x = 1.0 / curvature - across * np.cos(turn)

@@ -15,15 +15,24 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from landmark_faces import SIDE, STORED_SIDE, Face, points_of_dlib, read_photographs, read_set
+from landmark_faces import (
+    PICTURE_SIDE,
+    STORED_SIDE,
+    Face,
+    points_of_dlib,
+    read_photographs,
+    read_set,
+)
 from torch import Tensor, nn
 from torch.nn import functional
 
-from risorius.bench.landmarks import GROUPS
+from risorius.bench.landmarks import LANDMARK_GROUPS
 from risorius.faces import Faces
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 
-MIRRORED_POINTS = torch.from_numpy(MIRRORED)  # the number of each point in a mirrored picture
+MIRRORED_POINTS = torch.from_numpy(
+    MIRRORED_LANDMARKS
+)  # the number of each point in a mirrored picture
 
 
 def tensors(faces: list[Face]) -> tuple[Tensor, Tensor]:
@@ -38,9 +47,13 @@ def seen(pictures: Tensor, points: Tensor, changes: Tensor | None = None) -> tup
 
     changes: an affine map from the result to the picture, for each picture, shape (n, 2, 3).
     """
-    middle = torch.tensor([[SIDE / STORED_SIDE, 0.0, 0.0], [0.0, SIDE / STORED_SIDE, 0.0]])
+    middle = torch.tensor(
+        [[PICTURE_SIDE / STORED_SIDE, 0.0, 0.0], [0.0, PICTURE_SIDE / STORED_SIDE, 0.0]]
+    )
     view = middle.expand(len(pictures), 2, 3) if changes is None else changes
-    grid = functional.affine_grid(view, [len(pictures), 3, SIDE, SIDE], align_corners=False)
+    grid = functional.affine_grid(
+        view, [len(pictures), 3, PICTURE_SIDE, PICTURE_SIDE], align_corners=False
+    )
     bright = pictures.float() / 255.0
     inside = functional.grid_sample(bright, grid, padding_mode="reflection", align_corners=False)
     turn = view[:, :, :2]
@@ -63,7 +76,7 @@ def _turned(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
     """Turn, scale, stretch, shift and mirror at random."""
     count = len(pictures)
     angle = torch.randn(count) * 0.35  # radians
-    size = SIDE / STORED_SIDE * torch.exp(torch.randn(count) * 0.15)
+    size = PICTURE_SIDE / STORED_SIDE * torch.exp(torch.randn(count) * 0.15)
     stretch = torch.exp(torch.randn(count) * 0.06)
     is_mirrored = torch.rand(count) < 0.5
     width = torch.where(is_mirrored, -stretch, stretch)
@@ -102,7 +115,9 @@ def _blur(pictures: Tensor) -> None:
         small = int(torch.randint(28, 80, ()))
         picture = pictures[number : number + 1]
         soft = functional.interpolate(picture, (small, small), mode="area")
-        pictures[number] = functional.interpolate(soft, (SIDE, SIDE), mode="bilinear")[0]
+        pictures[number] = functional.interpolate(
+            soft, (PICTURE_SIDE, PICTURE_SIDE), mode="bilinear"
+        )[0]
 
 
 def _cover(pictures: Tensor) -> None:
@@ -187,12 +202,14 @@ def report(name: str, faces: list[Face], network: Network, mean: Tensor) -> None
     pictures, points = tensors(faces)
     inside, places = seen(pictures, points)
     rows = {"mean face": mean.expand_as(places), "network": predicted(network, inside)}
-    rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * STORED_SIDE / SIDE).float()
-    print(f"{name}, {len(faces)} faces [%]".ljust(44), *(f"{group:>7}" for group in GROUPS))
+    rows["dlib"] = torch.from_numpy(points_of_dlib(faces) * STORED_SIDE / PICTURE_SIDE).float()
+    print(
+        f"{name}, {len(faces)} faces [%]".ljust(44), *(f"{group:>7}" for group in LANDMARK_GROUPS)
+    )
     for reader, places_found in rows.items():
         errors = percent(places_found, places)
         errors = errors[~errors[:, 0].isnan()]
-        means = [f"{errors[:, numbers].mean():7.2f}" for numbers in GROUPS.values()]
+        means = [f"{errors[:, numbers].mean():7.2f}" for numbers in LANDMARK_GROUPS.values()]
         print(f"    {reader} ({len(errors)} faces)".ljust(44), *means)
 
 

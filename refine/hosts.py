@@ -14,7 +14,7 @@ from .kahler.refiner import Kahler
 from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
-SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
+SMOOTH_OPTIONS = {"scheme": "cubic", "criterion": "displacement+rest"}
 """Options that refine regions that bend or are coarse at rest: the defaults of the application."""
 
 
@@ -64,7 +64,7 @@ class WeldedRefiner:
         self._used = np.unique(self.triangles)  # in the order of values of corners
         # The number of a doubled vertex is used as its texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
-        chosen = {**SMOOTH, **options}
+        chosen = {**SMOOTH_OPTIONS, **options}
         if options.get("splits") is not None and "criterion" not in options:
             del chosen["criterion"]
         refiner = create(

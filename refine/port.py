@@ -5,7 +5,7 @@ Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. All of this is found once per 
 refiner needs none of it. `refine_gl` uses only `risorius.refine` and this module.
 """
 
-from .beyond.blending import FANS, RAMP_WIDTH
+from .beyond.blending import FAN_TABLE, RAMP_WIDTH
 from .beyond.cubic import STEEPENING_SHARE, weigh_corners
 from .beyond.displacement import GROWTH_SHARE
 from .beyond.measuring import mean_length
@@ -14,14 +14,14 @@ from .border.rows import GEOMETRY_COLUMNS, wedge_values
 from .kahler.coherence import sequence_tables
 from .kahler.criterion import find_undefined_normals
 from .kahler.refiner import points_on_edges
-from .kahler.table import CENTRE, CONFIGURATIONS
+from .kahler.table import CENTRE_POINT, CONFIGURATION_TABLE
 from .mesh.borders import border_neighbours, follow_borders
 from .mesh.rings import vertex_rings
 
 __all__ = [
-    "CENTRE",
-    "CONFIGURATIONS",
-    "FANS",
+    "CENTRE_POINT",
+    "CONFIGURATION_TABLE",
+    "FAN_TABLE",
     "GEOMETRY_COLUMNS",
     "GROWTH_SHARE",
     "RAMP_WIDTH",

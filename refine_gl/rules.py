@@ -85,7 +85,7 @@ class Rules:
         for each in still:
             each.measure(rest_positions, rest_normals, metric)
             np.maximum(self.still, metric, out=self.still)
-        self._patterns = port.FANS if settings.blend else port.CONFIGURATIONS
+        self._patterns = port.FAN_TABLE if settings.blend else port.CONFIGURATION_TABLE
         if settings.coherent:
             self._patterns = port.sequence_tables().patterns
 

@@ -14,7 +14,7 @@ from risorius.refine import Connectivity, port
 
 from .rules import Arrays, Rules
 
-GROUP = 256
+GROUP_SIZE = 256
 """Threads of a group for prefix sums: OpenGL 4.3 guarantees 1024."""
 
 
@@ -59,8 +59,8 @@ def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
     limits = rules.limits
     lines = [
         *(f"#define {name}" for name in rules.switches),
-        f"#define GROUP {GROUP}",
-        f"#define CENTRE {port.CENTRE}",
+        f"#define GROUP {GROUP_SIZE}",
+        f"#define CENTRE {port.CENTRE_POINT}",
         "layout(std140, binding = 0) uniform Sizes {",
         *(f"float {name};" for name in limits),
         *(f"uint {name};" for name in sizes),
@@ -73,7 +73,7 @@ def tables_of(mesh: Connectivity, values: Floats32, rules: Rules) -> Tables:
 
 def groups_of(threads: int) -> int:
     """Number of groups for this many threads."""
-    return -(-threads // GROUP)
+    return -(-threads // GROUP_SIZE)
 
 
 def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) -> dict[str, int]:

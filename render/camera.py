@@ -22,8 +22,8 @@ from .render_target import Rectangle, intersection, scaled
 
 FIELD_OF_VIEW = 25.0  # [degrees]; a portrait lens (about 80 mm on 35 mm film) keeps noses small
 FRAME_MARGIN = 0.06  # free fraction of the frame on each side, because mouths open and brows rise
-_CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
-_STEEPEST = 89.0  # [degrees]; greatest pitch, because beyond 90 "up" would tip over
+_UNIT_CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
+_STEEPEST_PITCH = 89.0  # [degrees]; greatest pitch, because beyond 90 "up" would tip over
 
 # Name -> yaw and pitch [degrees]: yaw moves toward the subject's left, pitch moves up.
 VIEWS: dict[str, tuple[float, float]] = {
@@ -100,7 +100,7 @@ class OrbitCamera:
     def orbit(self, yaw: float, pitch: float = 0.0) -> None:
         """Turn around the target by `yaw`, and up by `pitch` [degrees], but not over the poles."""
         self.yaw = math.remainder(self.yaw + yaw, 360.0)
-        self.pitch = min(max(self.pitch + pitch, -_STEEPEST), _STEEPEST)
+        self.pitch = min(max(self.pitch + pitch, -_STEEPEST_PITCH), _STEEPEST_PITCH)
 
     def pan(self, right: float, up: float) -> None:
         """Move the camera sideways by fractions of the frame's height, at the target's distance."""
@@ -288,5 +288,5 @@ def box_corners(points: npt.NDArray[Any]) -> Floats64:
     low = points.min(axis=0).astype(np.float64)
     high = points.max(axis=0).astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):  # an unstable simulation is also drawn
-        corners: Floats64 = low + _CORNERS * (high - low)
+        corners: Floats64 = low + _UNIT_CUBE * (high - low)
     return corners

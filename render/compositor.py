@@ -16,7 +16,7 @@ from .edges import EdgeSmoother
 from .programs import compile_program
 from .render_target import NewTexture, Rectangle, RenderTarget, scaled
 
-_UNIT = 4  # texture unit while enlarging
+_TEXTURE_UNIT = 4  # texture unit while enlarging
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Compositor:
         self._colour = new_texture(size)
         self.frame = gl.framebuffer([self._colour])
         program = compile_program(gl, "stretch.glsl")
-        program["scene"] = _UNIT
+        program["scene"] = _TEXTURE_UNIT
         self._plain = gl.vertex_array(program, [])
         self._smoother: EdgeSmoother | None = None
 
@@ -106,7 +106,7 @@ class Compositor:
         is_enlarged = picture.size != self.size
         picture.filter = (moderngl.LINEAR if is_enlarged else moderngl.NEAREST,) * 2
         gl.disable(moderngl.DEPTH_TEST)
-        picture.use(_UNIT)
+        picture.use(_TEXTURE_UNIT)
         self._plain.render(moderngl.TRIANGLES, vertices=3)
         gl.enable(moderngl.DEPTH_TEST)
 
@@ -130,7 +130,7 @@ class Compositor:
         """Draw a label (h, w, 4) into the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
-        gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
+        gl.texture((width, height), 4, image[::-1].tobytes()).use(_TEXTURE_UNIT)
         gl.viewport = x, y, width, height
         gl.enable_only(moderngl.BLEND)
         gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA

@@ -9,7 +9,7 @@ import moderngl
 from .programs import compile_program
 from .render_target import NewTexture, Rectangle, RenderTarget
 
-_UNIT = 4  # texture unit of the scene
+_TEXTURE_UNIT = 4  # texture unit of the scene
 
 
 class EdgeSmoother:
@@ -34,7 +34,7 @@ class EdgeSmoother:
     def _pass(self, *defines: str) -> moderngl.VertexArray:
         """Make a pass over all pixels of the scene with some defines."""
         program = compile_program(self._gl, "edges.glsl", *defines)
-        program["scene"] = _UNIT
+        program["scene"] = _TEXTURE_UNIT
         return self._gl.vertex_array(program, [])
 
     def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
@@ -49,7 +49,7 @@ class EdgeSmoother:
         gl = self._gl
         gl.scissor = None
         gl.copy_framebuffer(self.frame, scene.frame)
-        scene.colour.use(_UNIT)
+        scene.colour.use(_TEXTURE_UNIT)
         gl.enable_only(moderngl.DEPTH_TEST)
         self._edges.use()
         self._edges.clear(depth=1.0)

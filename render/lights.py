@@ -8,9 +8,12 @@ from types import MappingProxyType
 from .light_map import LIGHT_MAPS
 from .style import Light
 
-_ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding="utf-8"))
+_LAMP_ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding="utf-8"))
 LAMPS: Mapping[str, Light] = MappingProxyType(
-    {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
+    {
+        name: Light(**{key: tuple(xyz) for key, xyz in row.items()})
+        for name, row in _LAMP_ROWS.items()
+    }
 )
 """Lamps: name -> key light, fill light, rim light, and ambient light of a hemisphere."""
 LIGHTS: Mapping[str, Light] = MappingProxyType(

@@ -15,7 +15,7 @@ from .texture import BumpMap
 
 SKIN_SHARPNESS = 28.0  # exponent of the skin's highlight: a soft sheen, chosen by eye
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl has the same number
-_PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
+_LINEAR_PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 
 
 def mesh_shader(
@@ -79,7 +79,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: PlacedView, line_sca
         program["wire_half_width"] = 0.5 * style.wire_width * line_scale
         program["wire_colour"] = *style.wire_colour, style.wire_opacity * style.wireframe
     if style.colour_by is not ColourBy.NONE:
-        write_uniform(program, "split_palette", _PALETTE)
+        write_uniform(program, "split_palette", _LINEAR_PALETTE)
 
 
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: PlacedView) -> None:

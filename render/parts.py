@@ -23,7 +23,7 @@ STRIATION_LAYOUTS = {
     5: ("LOCKS", " 3f 1f 1f", "in_along", "in_half", "in_opacity"),
     6: ("SHELLS", " 2f 3f 1f", *SHELL_ATTRIBUTES),
 }
-LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
+MOST_LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # smallest number of shells
 LAYER_PIXELS = 10.0  # [pixels] between two layers, where shells are thickest
 SHADING_DENSITY = 0.6  # density of shells from which they throw a shadow
@@ -129,7 +129,9 @@ class PartBuffers:
         """Return the number of layers of the part's shells in a view."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
-        return int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
+        return int(
+            np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, MOST_LAYERS)
+        )
 
     def draw_shells(self, program: moderngl.Program, view: PlacedView) -> None:
         """Draw the layers from the inside out; the thin outer layers do not write depths."""

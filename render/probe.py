@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from .errors import GLError
 
-_PATIENCE = 60.0  # [s]; software drivers need a few seconds on a loaded machine
+_PROBE_TIMEOUT = 60.0  # [s]; software drivers need a few seconds on a loaded machine
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def _probe_in_process(name: str) -> Finding:
             capture_output=True,
             text=True,
             errors="replace",
-            timeout=_PATIENCE,
+            timeout=_PROBE_TIMEOUT,
             check=True,
         )
     except subprocess.SubprocessError as error:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from .errors import GLError
 
 SHADER_FOLDER = Path(__file__).parent / "shaders"
-_INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
+_INCLUDE_LINE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 
 
 @cache
@@ -30,7 +30,7 @@ def shader_text(name: str) -> str:
         line = text.count("\n", 0, match.start()) + 2
         return f"{shader_text(match.group(1))}\n#line {line}"
 
-    return _INCLUDE.sub(fill, text)
+    return _INCLUDE_LINE.sub(fill, text)
 
 
 def compile_program(

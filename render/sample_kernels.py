@@ -20,7 +20,9 @@ SURFACE_KIND = 0
 HAIR_KIND = 1
 TRIANGLE_KIND = 2  # each triangle counts as a separate surface
 _LEAST_FACING = 0.05  # as in shell_layers.glsl
-_OFFSETS = np.array([(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)])  # offsets to a pixel and neighbours
+_NEIGHBOUR_OFFSETS = np.array(
+    [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)]
+)  # offsets to a pixel and neighbours
 _SKIN_NUMBER = 190  # smallest surface number of skin, see surface_number.glsl
 _DEPTH_STEPS = 255.0 * 255.0  # number of steps of a pixel's stored depth
 
@@ -348,9 +350,9 @@ def mix(
         for s in range(len(SAMPLE_POSITIONS)):
             best = 2.0
             shown_x, shown_y = x, y
-            for k in range(len(_OFFSETS)):
-                at_x = min(max(x + _OFFSETS[k, 0], 0), width - 1)
-                at_y = min(max(y + _OFFSETS[k, 1], 0), height - 1)
+            for k in range(len(_NEIGHBOUR_OFFSETS)):
+                at_x = min(max(x + _NEIGHBOUR_OFFSETS[k, 0], 0), width - 1)
+                at_y = min(max(y + _NEIGHBOUR_OFFSETS[k, 1], 0), height - 1)
                 known = surfaces[at_y, at_x]
                 off = abs((255.0 * known[1] + known[2]) / _DEPTH_STEPS - depths[n, s])
                 if _differ(known[0], seen[n, s]):

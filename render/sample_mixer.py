@@ -17,7 +17,7 @@ from .programs import compile_program
 from .render_target import Rectangle, RenderTarget, around
 
 # Sampler -> texture unit.
-_UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}
+_TEXTURE_UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}
 
 
 class Mixer(Protocol):
@@ -49,7 +49,7 @@ class SampleMixer:
         """Make a pass over all pixels of the target with some defines."""
         samples = f"SAMPLES {self.target.samples}"
         program = compile_program(self._gl, "mixing.glsl", samples, *defines)
-        for name, unit in _UNITS.items():
+        for name, unit in _TEXTURE_UNITS.items():
             if name in program:
                 program[name] = unit
         return self._gl.vertex_array(program, [])
@@ -59,7 +59,7 @@ class SampleMixer:
         gl = self._gl
         area = around(areas)
         bands = _bands(areas)
-        self.target.surfaces.use(_UNITS["surfaces"])
+        self.target.surfaces.use(_TEXTURE_UNITS["surfaces"])
         self._found.use()
         gl.scissor = None
         self._found.clear(depth=1.0)
@@ -67,9 +67,9 @@ class SampleMixer:
         self._coverage.draw(drawn, view, area)
         gl.scissor = None
         gl.copy_framebuffer(self._copied, self.target.frame)
-        self._copy.use(_UNITS["colours"])
-        self._coverage.numbers.use(_UNITS["sample_numbers"])
-        self._coverage.depths.use(_UNITS["sample_depths"])
+        self._copy.use(_TEXTURE_UNITS["colours"])
+        self._coverage.numbers.use(_TEXTURE_UNITS["sample_numbers"])
+        self._coverage.depths.use(_TEXTURE_UNITS["sample_depths"])
         self._mixed.use()
         gl.depth_func = "=="
         self._run(self._mix, view, area, bands)

@@ -20,10 +20,12 @@ from .frame import Frame
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 
-RESOLUTION = 288  # texels in width and height; on a head 1.2 mm each, so shadows fade within 5 mm
+MAP_RESOLUTION = (
+    288  # texels in width and height; on a head 1.2 mm each, so shadows fade within 5 mm
+)
 # These lengths are fractions of the scene's radius.
 MAP_REACH = 1.15  # half the map's width; a face moves beyond its rest pose
-TEXEL_SIZE = 2.0 * MAP_REACH / RESOLUTION  # size of a texel
+TEXEL_SIZE = 2.0 * MAP_REACH / MAP_RESOLUTION  # size of a texel
 LOOKUP_OFFSET = 0.003  # distance of look-ups above the surface, 0.45 mm on a head
 STEEP_HEIGHT = 0.999  # y of a light's direction, above which y cannot be the map's up direction
 
@@ -60,7 +62,7 @@ class ShadowMap:
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
         self._program = compile_program(gl, "shadow.glsl")
-        self._depth = gl.depth_texture((RESOLUTION, RESOLUTION))
+        self._depth = gl.depth_texture((MAP_RESOLUTION, MAP_RESOLUTION))
         self._depth.compare_func = "<="
         self._depth.repeat_x = self._depth.repeat_y = False
         self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
@@ -74,7 +76,7 @@ class ShadowMap:
         view_to_light = _view_to_light(view, _basis(np.array(frame.style.light.to_key)))
         to_light = view.world_to_view @ view_to_light
         self._target.use()
-        gl.viewport = (0, 0, RESOLUTION, RESOLUTION)
+        gl.viewport = (0, 0, MAP_RESOLUTION, MAP_RESOLUTION)
         gl.scissor = None
         self._target.clear(depth=1.0)
         if with_skin and frame.skin is not None:

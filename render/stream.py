@@ -27,7 +27,7 @@ class TriangleGroup(Enum):
 
 NUMBER_BYTES = 4  # bytes of a float32 or uint32
 COMMAND_WORDS = 7  # numbers in the command buffer of a `GpuStream`
-_ATTRIBUTES = (
+_VERTEX_ATTRIBUTES = (
     ("3f", "in_position"),
     ("3f", "in_normal"),
     ("2f", "in_uv"),
@@ -40,7 +40,7 @@ _ATTRIBUTES = (
 
 def _layout(count: int) -> tuple[str, ...]:
     """Return the format of the first `count` attributes of a vertex, and their names."""
-    formats, names = zip(*_ATTRIBUTES[:count], strict=True)
+    formats, names = zip(*_VERTEX_ATTRIBUTES[:count], strict=True)
     return " ".join(formats), *names
 
 

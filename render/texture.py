@@ -20,7 +20,7 @@ _BUMP_UNIT = 5
 _AROUND_UNIT = 6
 _FINE_UNIT = 7
 _AROUND_LEVEL = 5  # mipmap level at which a texel is the mean of 32 x 32 texels
-ANISOTROPY = 8.0  # greatest ratio of anisotropic filtering
+MOST_ANISOTROPY = 8.0  # greatest ratio of anisotropic filtering
 
 
 class _Mipmaps:
@@ -80,7 +80,7 @@ class Texture(_Mipmaps):
             texels = _halved(texels)
         # Drivers without this extension report 0. In software OpenGL it is several times slower.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
-            self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
+            self._texture.anisotropy = min(MOST_ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
         self.fine_shape = fine_shape
 

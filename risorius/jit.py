@@ -36,7 +36,7 @@ from numba.core import event
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+KERNEL_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Options of all kernels: they release the GIL, and 1 / 0 is infinite, as in numpy."""
 
 log = logging.getLogger(__name__)
@@ -72,11 +72,11 @@ def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[s
     is_ours = function.__module__.partition(".")[0] == __package__ and not function.__closure__
     folder = None if _numbas.DISABLE_JIT or not is_ours else cache_folder()
     if folder is None:
-        return numba.njit(function, **OPTIONS, **options)
+        return numba.njit(function, **KERNEL_OPTIONS, **options)
     with _lock:
         before, _numbas.CACHE_DIR = _numbas.CACHE_DIR, str(folder)
         try:
-            return numba.njit(function, cache=True, **OPTIONS, **options)
+            return numba.njit(function, cache=True, **KERNEL_OPTIONS, **options)
         finally:
             _numbas.CACHE_DIR = before
 

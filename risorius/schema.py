@@ -48,7 +48,7 @@ MUST_BE = {
     "too_long": "a list of {max_length}",
     "tuple_type": "a list",
 }
-LENIENT = "unknown keys are ignored"  # for files of other versions
+LENIENT_NOTE = "unknown keys are ignored"  # for files of other versions
 ADDED_START = "("  # readers add keys that begin with this; no file has them
 REST_KEY = f"{ADDED_START}rest)"
 HIDDEN_KEY = f"{ADDED_START}hidden)"
@@ -217,7 +217,7 @@ def read_valid_entries(kind: type[Read], document: Any) -> tuple[Read, list[str]
     found: list[str] = []
     while True:
         try:
-            return cast(Read, _adapter(kind).validate_python(document, context=LENIENT)), found
+            return cast(Read, _adapter(kind).validate_python(document, context=LENIENT_NOTE)), found
         except ValidationError as problem:
             first = problem.errors(include_url=False)[0]
             found.append(_line("", first).removeprefix(": "))
@@ -279,7 +279,7 @@ def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> 
     others = {key: value for key, value in table.items() if key not in plain}
     if REST_KEY in known:
         return {**found, REST_KEY: {str(key): value for key, value in others.items()}}
-    for key in () if info.context is LENIENT else others:
+    for key in () if info.context is LENIENT_NOTE else others:
         allowed = ", ".join(each for each in known if not each.startswith(ADDED_START))
         raise ValueError(
             f"unknown key {quoted(key)}{question(key, known) or '.'} Allowed: {allowed}"

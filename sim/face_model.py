@@ -18,8 +18,8 @@ from .eye_contact import watch_eyeballs
 from .foundation import Foundation, foundation_of
 from .landmarks import (
     INNER_CORNERS,
-    LOWER_INNER,
-    UPPER_INNER,
+    LOWER_INNER_LIP,
+    UPPER_INNER_LIP,
     mouth_line,
     smoothstep,
 )
@@ -195,7 +195,7 @@ def _head_weight(surface: SkinSurface, landmarks: Floats64) -> Floats64:
 def _closed_weight(surface: SkinSurface, landmarks: Floats64, weight: Floats64) -> Floats64:
     """Return the mandible's weight that keeps lips as at rest over an open jaw, shape (V,)."""
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
-    upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))
+    upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER_LIP, LOWER_INNER_LIP))
     if np.linalg.norm(upper - lower, axis=1).max() > PAIR_GAP:  # open at rest
         lips = [polyline_distance(surface.positions, lip) for lip in (upper, lower)]
         distance = np.minimum(*lips)

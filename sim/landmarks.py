@@ -25,11 +25,11 @@ from ..geometry.arrays import Floats64, Integers64
 LANDMARK_COUNT = 68
 
 # Landmarks in the middle of each lip. The inner points are left out, because they often coincide.
-UPPER_LIP = (50, 51, 52)
-LOWER_LIP = (56, 57, 58)
+UPPER_LIP_MIDDLE = (50, 51, 52)
+LOWER_LIP_MIDDLE = (56, 57, 58)
 INNER_CORNERS = (60, 64)
-UPPER_INNER = (60, 61, 62, 63, 64)  # the inner line of the upper lip
-LOWER_INNER = (60, 67, 66, 65, 64)  # the inner line of the lower lip
+UPPER_INNER_LIP = (60, 61, 62, 63, 64)  # the inner line of the upper lip
+LOWER_INNER_LIP = (60, 67, 66, 65, 64)  # the inner line of the lower lip
 
 
 class Side(Enum):
@@ -59,7 +59,7 @@ def _mirror_table() -> Integers64:
     return table
 
 
-MIRRORED = _mirror_table()  # number of the landmark on the other side of the face
+MIRRORED_LANDMARKS = _mirror_table()  # number of the landmark on the other side of the face
 
 
 @dataclass(frozen=True)
@@ -80,13 +80,13 @@ class LandmarkPoint:
         mirrored = side is Side.RIGHT
         point = np.zeros(3)
         for number, weight in self.mix:
-            point += weight * landmarks[MIRRORED[number] if mirrored else number]
+            point += weight * landmarks[MIRRORED_LANDMARKS[number] if mirrored else number]
         return point + np.array(self.offset) * (side.sign, 1.0, 1.0)
 
 
 def mouth_line(landmarks: Floats64) -> Floats64:
     """The line between the inner lips, from corner to corner, (5, 3); landmarks: (68, 3)."""
-    line: Floats64 = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
+    line: Floats64 = (landmarks[list(UPPER_INNER_LIP)] + landmarks[list(LOWER_INNER_LIP)]) / 2.0
     return line
 
 

@@ -15,7 +15,7 @@ from .polylines import polyline_distance
 from .rig import Eyes
 from .surface import SkinSurface
 
-COLUMN_COUNT = 41  # places along the opening where its height is known
+LID_COLUMNS = 41  # places along the opening where its height is known
 
 
 class LidAxes(NamedTuple):
@@ -75,14 +75,14 @@ def side_with_edges(side: Floats64, upper: Integers32, lower: Integers32) -> Flo
 
 
 class OneLid(NamedTuple):
-    """Values of one lid by vertex, shape (V,), or by column of the opening, (COLUMN_COUNT,)."""
+    """Values of one lid by vertex, shape (V,), or by column of the opening, (LID_COLUMNS,)."""
 
     weight: Floats64  # (V,) share of the margin's turn
     fold: Floats64  # (V,) share of the turn of the open lid
     slide: Floats64  # (V,) share of the slide
     near: Flags  # (V,) near the margin
-    front: Floats64  # (COLUMN_COUNT,) rad, angle to the front edge
-    depth: Floats64  # (COLUMN_COUNT,) mm from the centre of the eyeball to the front edge
+    front: Floats64  # (LID_COLUMNS,) rad, angle to the front edge
+    depth: Floats64  # (LID_COLUMNS,) mm from the centre of the eyeball to the front edge
 
 
 def one_lid(
@@ -99,7 +99,7 @@ def one_lid(
     column = axes.column(surface.positions)
     edge = edge[np.argsort(axes.column(edge), kind="stable")]
     columns = axes.column(edge)
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
     slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
     return OneLid(

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
 from .landmarks import smoothstep
-from .lid_edges import COLUMN_COUNT, LidAxes
+from .lid_edges import LID_COLUMNS, LidAxes
 from .surface import SkinSurface
 
 
@@ -39,7 +39,7 @@ def turn_above(
     faded = 1.0 + (distance / np.interp(column, *_HALF_DISTANCE)) ** steepness
     fraction = np.interp(column, *_FAR_FRACTION) / faded
     fraction *= smoothstep(side)  # skin beside the corners is held
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     height = axes.angle(surface.positions) - np.interp(column, where, edge_angles[1])
     most = np.interp(column, *_MOST_MOTION) * np.maximum(height, 0.0)
     edge_turn = np.maximum(edge_angles[0] - edge_angles[1], 0.0)

@@ -32,7 +32,7 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, smoothstep
-from .lid_edges import COLUMN_COUNT, LidAxes, OneLid, front_edges, one_lid, side_with_edges
+from .lid_edges import LID_COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
 from .lid_fold import turn_above
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, turn_lids
@@ -221,7 +221,7 @@ def _one_eye(
     edges = front_edges(surface, axes, outline)
     side = side_with_edges(lid_side(surface, landmarks, ball.side), *edges)
     upper, lower = _both_lids(eyes, surface, axes, edges, side)
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
     least_opening = 0.05  # rad: closed lids do not overlap where an eye opens less
@@ -269,7 +269,7 @@ def _one_eye(
 def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
     """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
     proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     proud = proud_height * np.minimum(2.0 * np.interp(column, where, full), 1.0)
     sunk: Floats64 = np.interp(column, where, upper.depth - lower.depth) - proud
     return sunk
@@ -285,7 +285,7 @@ def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
     beyond = np.maximum(np.abs(column - 0.5) - 0.5, 0.0)
     slide_ends = (0.1, 1.7)  # factors of the slide at the outer and the inner corner
     ends: Floats64 = np.interp(column, (0.0, 1.0), slide_ends)
-    opened = np.interp(column, np.linspace(0.0, 1.0, COLUMN_COUNT), full)
+    opened = np.interp(column, np.linspace(0.0, 1.0, LID_COLUMNS), full)
     return near * opened * ends * smoothstep(1.0 - beyond / slide_beyond)
 
 
@@ -308,7 +308,7 @@ def _both_lids(
 def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
     """The margin of a lid itself, up to its front edge, shape (V,)."""
     edge_turn = 1e-3  # rad
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     within: Flags = lid.near & (sign * (angle - np.interp(column, where, lid.front)) < edge_turn)
     return within
 
@@ -326,7 +326,7 @@ def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
 
     Lids that meet below such a corner leave a notch beside it. upper: front edge of the upper lid.
     """
-    where = np.linspace(0.0, 1.0, COLUMN_COUNT)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
     corner_slope = 0.5  # [rad] over the width of the opening
     raised = np.maximum(seam[0] - corner_slope * where, seam[-1] - corner_slope * (1.0 - where))
     joined: Floats64 = np.maximum(seam, np.minimum(raised, upper))
@@ -337,7 +337,7 @@ def _smoothed(height: Floats64) -> Floats64:
     """Opening by column, smoothed at the ends so that skin off the margin does not crease."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)
-    return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:COLUMN_COUNT])
+    return np.asarray(wide[smooth_columns + smooth_columns // 2 :][:LID_COLUMNS])
 
 
 def _lid_muscles(

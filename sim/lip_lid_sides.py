@@ -12,14 +12,21 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.arrays import Floats64
-from .landmarks import EYE_LANDMARKS, INNER_CORNERS, LOWER_LIP, UPPER_LIP, Side, smoothstep
+from .landmarks import (
+    EYE_LANDMARKS,
+    INNER_CORNERS,
+    LOWER_LIP_MIDDLE,
+    UPPER_LIP_MIDDLE,
+    Side,
+    smoothstep,
+)
 from .surface import SkinSurface
 
 
 def lip_side(surface: SkinSurface, landmarks: Floats64) -> Floats64:
     """+1 on the upper lip .. -1 on the lower lip, smooth around the corners, shape (V,)."""
-    upper = _distance(surface, landmarks, UPPER_LIP)
-    lower = _distance(surface, landmarks, LOWER_LIP)
+    upper = _distance(surface, landmarks, UPPER_LIP_MIDDLE)
+    lower = _distance(surface, landmarks, LOWER_LIP_MIDDLE)
     lip_reach = 20.0  # mm from the middle of a lip within which skin belongs to it
     inside = np.flatnonzero(np.minimum(upper, lower) < lip_reach)
     # On a lip the two path lengths differ by about twice the distance to the mouth corner; at the

@@ -23,7 +23,7 @@ from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
 from ..jit import njit
 from .coordinates import FaceSpace
-from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Side
+from .landmarks import EYE_LANDMARKS, MIRRORED_LANDMARKS, UPPER_LIP_MIDDLE, Side
 from .rig import Eyes, HeadJoint, Jaw
 from .surface import SkinSurface
 
@@ -284,7 +284,7 @@ def mandible_weight_from_landmarks(
     values: list[float] = []
     nearest = surface.nearest(landmarks)
     for number, seed in jaw.seeds:
-        for landmark in {number, int(MIRRORED[number])}:
+        for landmark in {number, int(MIRRORED_LANDMARKS[number])}:
             vertices.append(int(nearest[landmark]))
             values.append(seed)
     x, y, z = surface.positions.T
@@ -293,7 +293,7 @@ def mandible_weight_from_landmarks(
     behind_ears = 20.0  # the same, mm behind the ear landmarks
     fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - behind_ears
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
-    middle = landmarks[list(UPPER_LIP)].mean(axis=0)
+    middle = landmarks[list(UPPER_LIP_MIDDLE)].mean(axis=0)
     lips = np.abs(lip_side) > 0.9
     lips &= np.abs(x - middle[0]) < half_mouth
     lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.bench.reproduce import table1
 
 from .app.command_line import succeeded
@@ -52,7 +52,7 @@ def test_table_of_exported_files(script, tmp_path):
     succeeded("export", str(ROOT / f"assets/scripts/{script}.toml"), "-o", str(path), "--quiet")
     player = Player(path)
     assert len(player.times) == frames
-    named = len(ARKIT)
+    named = len(ARKIT_SHAPES)
     assert len(player.primitive("skin").targets) == approx(named + residual, abs=2)
     assert path.stat().st_size / 1e6 == approx(size, rel=0.1)
 

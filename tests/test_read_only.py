@@ -11,7 +11,7 @@ from risorius import assets, refine, sim
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.assets.fitting import fit
 from risorius.assets.identities import make_person, sample_identity
-from risorius.refine.kahler.table import CONFIGURATIONS
+from risorius.refine.kahler.table import CONFIGURATION_TABLE
 from tests.heads import user_head
 
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
@@ -77,7 +77,7 @@ THINGS = {
     "sine": lambda head: PlaneScene(),
     "connectivity": lambda head: refine.connect(head.faces, len(head.vertices)),
     "welded": lambda head: refine.WeldedRefiner(head.vertices, head.faces),
-    "table": lambda head: CONFIGURATIONS,
+    "table": lambda head: CONFIGURATION_TABLE,
 }
 REFINERS = {
     "none": ("none", {}),

@@ -14,7 +14,7 @@ import numpy as np
 
 from risorius import render
 from risorius.assets.fitting.skull import build_skull, neck_sections
-from risorius.assets.identities import GLASSES, HAIR, MASK
+from risorius.assets.identities import GLASSES_NAME, HAIR_NAME, MASK_NAME
 
 from ..scenes import Drawable, Face
 from ..scenes.bent_part import BentPart, HeadPart, at_rest
@@ -23,9 +23,9 @@ from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
 SIDE_SIGNS = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's side with translucent skin
-OPACITY = 0.25  # default opacity of the skin
+SKIN_OPACITY = 0.25  # default opacity of the skin
 SOFT_PARTS = ("oral_cavity", "gums")  # beginnings of names of parts that line the mouth
-OUTER_HAIR = (HAIR, HAIR + "_tied")
+OUTER_HAIR = (HAIR_NAME, HAIR_NAME + "_tied")
 CUT_LOCKS = 15.0  # [mm]; distance from the cut of a dissection to the locks of hair that are drawn
 
 
@@ -34,7 +34,7 @@ class AnatomyView:
     """The structures to show under the skin, the opacity of the skin, and whether to show hair."""
 
     structures: tuple[str, ...] = ()
-    opacity: float = OPACITY
+    opacity: float = SKIN_OPACITY
     side: str = "both"
     has_hair: bool = True
 
@@ -75,11 +75,13 @@ class Anatomy:
         bones = scene.bone_transforms()
         place = render.PlacedPart.on_bone
         if face is None or not view.structures or view.opacity >= 1.0:
-            parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
+            parts = [
+                part for part in scene.parts if has_hair or not part.name.startswith(HAIR_NAME)
+            ]
             openings = self._openings()
             placed = []
             for each in parts:
-                is_outside = each.name in (*OUTER_HAIR, GLASSES, MASK)
+                is_outside = each.name in (*OUTER_HAIR, GLASSES_NAME, MASK_NAME)
                 opening = openings.get(opening_before(each.name, each.bone))
                 placed.append(place(each, bones, throws_shadow=is_outside, opening=opening))
             return Dissection(tuple(placed))
@@ -87,7 +89,7 @@ class Anatomy:
             place(part, bones, lies_beneath=True, throws_shadow=True)
             for part in self._structures(face, view)
         ]
-        stay = [part for part in scene.parts if not part.name.startswith((*SOFT_PARTS, HAIR))]
+        stay = [part for part in scene.parts if not part.name.startswith((*SOFT_PARTS, HAIR_NAME))]
         openings = self._openings() if SIDE_SIGNS[view.side] else {}
         others = [
             place(half, bones, throws_shadow=not part.strand_radius, opening=opening)
@@ -134,7 +136,7 @@ class Anatomy:
     def _hair_on_opaque_side(self, face: Face, view: AnatomyView) -> list[BentPart]:
         """Return the hair on the opaque side; none if both sides are translucent."""
         side = SIDE_SIGNS[view.side]
-        parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR)]
+        parts = [part for part in self._scene.parts if side and part.name.startswith(HAIR_NAME)]
         return [self._half(face, part, side) for part in parts]
 
     def _half(self, face: Face, part: HeadPart, side: float) -> BentPart:
@@ -142,7 +144,7 @@ class Anatomy:
         if (side, part.name) not in self._halves:
             aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
             # Locks near the cut would float above the skull of the other side.
-            is_lock = part.name.startswith(HAIR) and part.strand_radius > 0.0
+            is_lock = part.name.startswith(HAIR_NAME) and part.strand_radius > 0.0
             least = CUT_LOCKS if is_lock else 0.0
             half = replace(at_rest(part), faces=part.faces[side * aside < -least])
             self._halves[side, part.name] = BentPart(half)

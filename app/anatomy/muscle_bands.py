@@ -31,18 +31,18 @@ TENDON_COLOUR = np.array([0.93, 0.87, 0.77])
 EYE_BANDS = ((5.0, 9.0), (12.5, 9.0))
 MOUTH_BANDS = ((1.0, 8.0), (7.5, 8.0))
 # The edges of the upper and the lower lip.
-LIP_LANDMARKS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))
+LIP_EDGE_LANDMARKS = ((48, 49, 50, 51, 52, 53, 54), (48, 59, 58, 57, 56, 55, 54))
 # Beginning and end of names; landmarks; bands.
-SPHINCTERS = (
+SPHINCTER_BANDS = (
     ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE_BANDS),
     ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE_BANDS),
     ("orbicularis_oculi", "left", (45, 44, 43, 42), EYE_BANDS),
     ("orbicularis_oculi", "left", (45, 46, 47, 42), EYE_BANDS),
-    *(("orbicularis_oris", "", lip, MOUTH_BANDS) for lip in LIP_LANDMARKS),
+    *(("orbicularis_oris", "", lip, MOUTH_BANDS) for lip in LIP_EDGE_LANDMARKS),
 )
-FRACTIONS = np.linspace(0.0, 1.0, ROW_COUNT)  # of a band's length, at its rows
-BELLY_PROFILE = np.sin(np.pi * FRACTIONS)  # 1 in the middle
-WIDTH_PROFILE = np.sqrt(np.clip(1.0 - (2.0 * FRACTIONS - 1.0) ** 8, 0.0, 1.0))  # round
+ROW_FRACTIONS = np.linspace(0.0, 1.0, ROW_COUNT)  # of a band's length, at its rows
+BELLY_PROFILE = np.sin(np.pi * ROW_FRACTIONS)  # 1 in the middle
+WIDTH_PROFILE = np.sqrt(np.clip(1.0 - (2.0 * ROW_FRACTIONS - 1.0) ** 8, 0.0, 1.0))  # round
 LANDMARKS_AROUND = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}
 
 
@@ -119,7 +119,7 @@ class Muscles:
         thick = _thickness(np.ones((len(lines), 1)))
         end_depth = 3.4  # [mm] below the skin, at the end of a band
         start_depth = depth[:, :1]
-        deepening = FRACTIONS * FRACTIONS * (3.0 - 2.0 * FRACTIONS)
+        deepening = ROW_FRACTIONS * ROW_FRACTIONS * (3.0 - 2.0 * ROW_FRACTIONS)
         deep = start_depth + (end_depth - start_depth) * deepening
         deep[len(self.names) :] = end_depth  # sphincters do not begin on a bone
         side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
@@ -159,7 +159,7 @@ class Muscles:
         for name, own in (("cranium", ~self._is_mandible), ("mandible", self._is_mandible)):
             bands = np.flatnonzero(own)
             turn = bones[name][:3, :3].T
-            fraction = FRACTIONS[:, None]
+            fraction = ROW_FRACTIONS[:, None]
             fixed = self._rest[:, bands] @ turn + bones[name][:3, 3]
             rails[:, bands] = fixed + fraction * (rails[:, bands] - fixed)
             out = self._outward[:, bands] @ turn
@@ -194,7 +194,7 @@ class Muscles:
         change = CONTRACTED_COLOUR - RELAXED_COLOUR
         red = RELAXED_COLOUR + np.clip(active, 0.0, 1.0)[:, None] * change
         # Share of tendon in the colour: large at both ends of a band.
-        tendon = np.clip(1.4 - np.minimum(FRACTIONS, 1.0 - FRACTIONS) / 0.14, 0.0, 0.92)
+        tendon = np.clip(1.4 - np.minimum(ROW_FRACTIONS, 1.0 - ROW_FRACTIONS) / 0.14, 0.0, 0.92)
         fraction = np.tile(tendon, (len(grid), 1))
         fraction[len(self.names) :] = 0.0
         colour = red[:, None] + fraction[..., None] * (TENDON_COLOUR - red[:, None])
@@ -228,7 +228,7 @@ class Muscles:
         # Each band uses a different part of the pattern, 40 mm apart.
         start = 40.0 * np.arange(count)[:, None, None]
         across = start + 0.5 * self._width.max(axis=1)[:, None, None] * a
-        along = self._length[:, None, None] * FRACTIONS[:, None]
+        along = self._length[:, None, None] * ROW_FRACTIONS[:, None]
         both = np.broadcast_arrays(across, along)
         self.striation = np.stack(both, axis=-1).reshape(-1, 2).astype(np.float32)
 
@@ -261,7 +261,7 @@ def _linear_bands(
 def _ring_bands(marks: Floats64, names: Iterable[str]) -> list[_Band]:
     """Return the bands of sphincters around eyes and mouth; names: names of all lowest controls."""
     rings = []
-    for start, end, numbers, bands in SPHINCTERS:
+    for start, end, numbers, bands in SPHINCTER_BANDS:
         edge = _resampled(marks[None, list(numbers)])[0]
         red = _lip_height(marks) if start == "orbicularis_oris" else np.full(ROW_COUNT, np.inf)
         middle = marks[LANDMARKS_AROUND[end]].mean(axis=0)
@@ -298,7 +298,7 @@ def _widened(depths: Floats64) -> Floats64:
 
 def _lip_height(marks: Floats64) -> Floats64:
     """Return the height of a lip's red along the mouth [mm], (ROW_COUNT,); 0 at the corners."""
-    upper, lower = _resampled(marks[np.array(LIP_LANDMARKS)])
+    upper, lower = _resampled(marks[np.array(LIP_EDGE_LANDMARKS)])
     height: Floats64 = 0.5 * np.linalg.norm(upper - lower, axis=1)
     return height
 
@@ -309,7 +309,7 @@ def _before_mouth(line: Floats64, marks: Floats64) -> Floats64 | None:
     Some of the rig's fibres were fitted to motion, and pull across the lips.
     """
     x, y = line[:, :2].T
-    upper, lower = (marks[list(row), :2].T for row in LIP_LANDMARKS)
+    upper, lower = (marks[list(row), :2].T for row in LIP_EDGE_LANDMARKS)
     is_inside = (y < np.interp(x, *upper)) & (y > np.interp(x, *lower))
     is_inside &= (x > upper[0, 0]) & (x < upper[0, -1])
     rows = int(is_inside.argmax()) if is_inside.any() else ROW_COUNT

@@ -22,9 +22,9 @@ from ..text import as_text, counted
 from ..workers import Send, WorkerPool
 from .listing import Job
 
-OK = "ok"
-FAILED = "failed"
-SKIPPED = "skipped"
+DONE_STATE = "ok"
+FAILED_STATE = "failed"
+SKIPPED_STATE = "skipped"
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def run_lines(
     """Run all lines, and yield the result of each when it ends; `resume` skips finished lines."""
     done = {job for job in jobs if resume and job.is_done()}
     waiting = [job for job in jobs if job not in done]
-    yield from (Result(job, SKIPPED) for job in done)
+    yield from (Result(job, SKIPPED_STATE) for job in done)
     for job in waiting:
         job.log.unlink(missing_ok=True)
     if scheduler is None:
@@ -53,7 +53,7 @@ def run_lines(
     from ..cluster import run_on_cluster
 
     for job, result, why in run_on_cluster(do_line, waiting, scheduler):
-        yield result or Result(job, FAILED, error=why)
+        yield result or Result(job, FAILED_STATE, error=why)
 
 
 def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
@@ -74,8 +74,8 @@ def do_line(pool: WorkerPool, job: Job) -> Result:
     try:
         pool.run(_run_line, job, on_message=frames.append, log=job.log)
     except UserError as error:
-        return Result(job, FAILED, time.monotonic() - begin, error=str(error))
-    return Result(job, OK, time.monotonic() - begin, frames[-1])
+        return Result(job, FAILED_STATE, time.monotonic() - begin, error=str(error))
+    return Result(job, DONE_STATE, time.monotonic() - begin, frames[-1])
 
 
 def _run_line(job: Job, send: Send) -> None:
@@ -99,8 +99,11 @@ def _run_line(job: Job, send: Send) -> None:
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
     """Summarize the results of all commands in one sentence. seconds: the batch's duration."""
-    counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
-    frames = sum(each.frames for each in results if each.status == OK)
+    counts = {
+        name: sum(each.status == name for each in results)
+        for name in (DONE_STATE, FAILED_STATE, SKIPPED_STATE)
+    }
+    frames = sum(each.frames for each in results if each.status == DONE_STATE)
     outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())
     rate = f", {frames / seconds:.1f} a second" if seconds > 0.0 else ""
     return f"{counted(len(results), 'line')}: {outcomes}; {counted(frames, 'frame')}{rate}"

@@ -14,9 +14,9 @@ from risorius import render
 
 from ..pictures import Image
 
-INK = (245, 245, 245)
-FAINT_INK = (200, 203, 208)
-SHADE = (24, 26, 30)
+INK_COLOUR = (245, 245, 245)
+FAINT_INK_COLOUR = (200, 203, 208)
+SHADE_COLOUR = (24, 26, 30)
 LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet, for readable text of 15 pixels
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
@@ -35,7 +35,12 @@ Label = tuple[int, int, Image]
 def plate(text: str, size: float) -> Image:
     """Draw a line of text, and a smaller second line, on a dark plate; premultiplied RGBA."""
     lines = [
-        *zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT_INK), strict=False)
+        *zip(
+            text.split("\n"),
+            (font(size), font(0.82 * size)),
+            (INK_COLOUR, FAINT_INK_COLOUR),
+            strict=False,
+        )
     ]
     width = max(face.getlength(line) for line, face, _ in lines)
     page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
@@ -61,11 +66,13 @@ def colour_bar(size: float) -> Image:
         low = pad + tall - step * index
         ink = tuple(round(255.0 * part) for part in shade)
         draw.rectangle((left, round(low - step), left + wide - 1, round(low) - 1), fill=ink)
-        draw.text((numbers, low - 0.5 * step), f"{index + 1}", font=small, fill=INK, anchor="lm")
+        draw.text(
+            (numbers, low - 0.5 * step), f"{index + 1}", font=small, fill=INK_COLOUR, anchor="lm"
+        )
     title = PIL.Image.new("RGBA", (tall, wide + pad))
     middle = (0.5 * tall, 0.65 * size)
     ImageDraw.Draw(title).text(
-        middle, "Splits of a triangle's edges", font=small, fill=FAINT_INK, anchor="mm"
+        middle, "Splits of a triangle's edges", font=small, fill=FAINT_INK_COLOUR, anchor="mm"
     )
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))
@@ -73,11 +80,11 @@ def colour_bar(size: float) -> Image:
 
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
     """Return a dark plate with round corners, and an object that draws on it."""
-    page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
+    page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE_COLOUR, 0))
     draw = ImageDraw.Draw(page)
     corners = (0, 0, page.width - 1, page.height - 1)
     # An opacity of 185 in 255 hides most of the picture behind a text.
-    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, 185))
+    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE_COLOUR, 185))
     return page, draw
 
 
@@ -119,7 +126,7 @@ def captioned(image: Image, shown: Sequence[Label], lefts: Sequence[int]) -> Ima
     """
     page = image.copy()
     for left in filter(None, lefts):
-        page[:, left] = (*INK, 255)[: page.shape[2]]
+        page[:, left] = (*INK_COLOUR, 255)[: page.shape[2]]
     for x, y, label in shown:
         under = page[len(page) - y - len(label) : len(page) - y, x : x + label.shape[1]]
         kept = under * (255 - label[..., 3:].astype(np.uint16))
@@ -136,7 +143,7 @@ def contact_sheet(
     cell_height = round(cell_width * first.shape[0] / first.shape[1])
     caption_height = max(LEAST_CAPTION, cell_width // 16)
     sheet = PIL.Image.new(
-        "RGB", (columns * cell_width, rows * (cell_height + caption_height)), SHADE
+        "RGB", (columns * cell_width, rows * (cell_height + caption_height)), SHADE_COLOUR
     )
     draw = ImageDraw.Draw(sheet)
     for index, (name, image) in enumerate(poses):
@@ -145,5 +152,5 @@ def contact_sheet(
         small = PIL.Image.fromarray(image).resize((cell_width, cell_height), LANCZOS)
         sheet.paste(small, (left, top), small if small.mode == "RGBA" else None)
         middle = (left + cell_width / 2, top + cell_height + caption_height / 2)
-        draw.text(middle, name, font=font(caption_height * 0.55), fill=INK, anchor="mm")
+        draw.text(middle, name, font=font(caption_height * 0.55), fill=INK_COLOUR, anchor="mm")
     return np.asarray(sheet)

@@ -26,14 +26,14 @@ from .captions import captioned, labels
 DEFAULT_VIEW = "front"  # the face looks at the viewer
 
 
-FRAME_MARGIN = 0.05  # share of the frame that stays free on each side
+HEAD_MARGIN = 0.05  # share of the frame that stays free on each side
 
 
 def camera_for_whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
     """Return the camera of `camera_for`, moved away until it sees the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance
-    camera.fit(scene.framing.extent, FRAME_MARGIN)
+    camera.fit(scene.framing.extent, HEAD_MARGIN)
     camera.distance = max(camera.distance, wanted)
     return camera
 
@@ -53,7 +53,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     camera.orbit(yaw, pitch)
     camera.target = scene.framing.focus.copy()
     _, high, near = np.stack(camera.axes()) @ (scene.framing.framed - camera.target).T
-    half = (1.0 - FRAME_MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
+    half = (1.0 - HEAD_MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
     camera.distance = max(camera.distance, float((near + np.abs(high) / half).max()))
     camera.zoom(zoom)
     return camera

@@ -41,19 +41,23 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
 
 # AAC and Opus in forms that players need, at a quality that sounds like the source.
-AAC = "-acodec aac -b:a 192k"
-OPUS = "-acodec libopus -b:a 160k"
+AAC_OPTIONS = "-acodec aac -b:a 192k"
+OPUS_OPTIONS = "-acodec libopus -b:a 160k"
 # H.264 in 4:2:0, which every player reads and which needs even sides, at a quality without blocks.
 # The number of threads changes the bytes of the file and the memory. By default x264 starts 1.5
 # threads for each core, which take 1 GB on 64 cores.
-H264 = (
+H264_OPTIONS = (
     "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2 -vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 "
     "-preset veryfast -movflags +faststart"
 )
-VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -pix_fmt yuv420p"
+VP9_OPTIONS = (
+    "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -pix_fmt yuv420p"
+)
 # Each frame has its own palette, so ffmpeg need not keep all frames of a long film.
-GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
-WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
+GIF_OPTIONS = (
+    "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
+)
+WEBP_OPTIONS = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
 
 
 class FilmFormat(NamedTuple):
@@ -64,27 +68,27 @@ class FilmFormat(NamedTuple):
     fastest: float = 240.0  # [frames/s] that players show
 
 
-FORMATS = {
-    ".mp4": FilmFormat(H264, AAC),
-    ".webm": FilmFormat(VP9, OPUS),
+FILM_FORMATS = {
+    ".mp4": FilmFormat(H264_OPTIONS, AAC_OPTIONS),
+    ".webm": FilmFormat(VP9_OPTIONS, OPUS_OPTIONS),
     # A GIF frame lasts whole hundredths of a second; players slow down frames shorter than two.
-    ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
-    ".webp": FilmFormat(f"{WEBP} -loop 0"),
+    ".gif": FilmFormat(f"{GIF_OPTIONS} -loop 0", fastest=50.0),
+    ".webp": FilmFormat(f"{WEBP_OPTIONS} -loop 0"),
 }
-WITH_SOUND = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
+SOUND_FILM_SUFFIXES = tuple(suffix for suffix, each in FILM_FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
     """Return the film format for a file of this name, or None if it is not a film."""
-    return FORMATS.get(target.suffix.lower())
+    return FILM_FORMATS.get(target.suffix.lower())
 
 
 def check_name(output: Path) -> None:
     """Raise UserError unless the name is that of a film, a picture or a folder."""
     suffix = output.suffix.lower()
-    if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
+    if suffix not in (*FILM_FORMATS, ".png", "") and not output.is_dir():
         raise UserError(
-            f"{output}: unknown suffix '{suffix}'. Allowed are {', '.join(FORMATS)} (a film), "
+            f"{output}: unknown suffix '{suffix}'. Allowed are {', '.join(FILM_FORMATS)} (a film), "
             ".png (one picture) and a name without suffix (a folder of frames)"
         )
 
@@ -117,7 +121,7 @@ class Encoder:
         soundtrack: Soundtrack | None = None,
     ) -> None:
         """Start ffmpeg, for frames of `size` pixels; raises UserError if it is missing."""
-        form = FORMATS[target.suffix.lower()]
+        form = FILM_FORMATS[target.suffix.lower()]
         self._target = target
         self._part = part
         rate = Fraction(frames_per_second).limit_denominator()
@@ -197,7 +201,7 @@ def film(
     size: width and height of the frames [pixels]; H.264 leaves out the last row or column of an
     odd side. Raises UserError if the film cannot be written.
     """
-    fastest = FORMATS[target.suffix.lower()].fastest
+    fastest = FILM_FORMATS[target.suffix.lower()].fastest
     if frames_per_second > fastest:
         raise UserError(
             f"{target}: can have at most {fastest:g} frames a second, but --fps is "

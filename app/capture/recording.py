@@ -16,7 +16,7 @@ from ..sound.decoding import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame, check_camera
-from .outputs import WITH_SOUND, Soundtrack, check_name, format_of
+from .outputs import SOUND_FILM_SUFFIXES, Soundtrack, check_name, format_of
 
 
 def capture(
@@ -157,7 +157,11 @@ def _check(
             f"{output}: a film cannot be transparent; write a folder of pictures, or choose "
             "another --background"
         )
-    elif output is not None and script.sound is not None and output.suffix.lower() in WITH_SOUND:
+    elif (
+        output is not None
+        and script.sound is not None
+        and output.suffix.lower() in SOUND_FILM_SUFFIXES
+    ):
         try:
             load_sound(script.sound)
         except UserError as error:

@@ -18,14 +18,14 @@ from ..files import cannot_be_written, check_apart, check_folder
 from ..stopping import cleaned_up_if_stopped
 from ..text import counted, in_one_line
 from .options import SILENT_OPTION
-from .value_types import PATH
+from .value_types import PATH_TYPE
 
 LISTED_COMMANDS = ("capture", "export", "convert")  # commands that a line may hold
 OUTPUT_PARAMETERS = ("output", "sheet")  # names of their parameters for output files
 
 
 @click.command()
-@click.argument("listing", metavar="LIST", type=PATH)
+@click.argument("listing", metavar="LIST", type=PATH_TYPE)
 @click.option(
     "--jobs",
     type=click.IntRange(1, 1024),
@@ -42,7 +42,9 @@ OUTPUT_PARAMETERS = ("output", "sheet")  # names of their parameters for output 
     help="Skip lines whose outputs exist and are not older than their inputs.",
 )
 @click.option(
-    "--logs", type=PATH, help="Folder for the logs of the lines; by default LIST_logs beside LIST."
+    "--logs",
+    type=PATH_TYPE,
+    help="Folder for the logs of the lines; by default LIST_logs beside LIST.",
 )
 @SILENT_OPTION
 def batch(
@@ -61,7 +63,7 @@ def batch(
     """
     from tqdm import tqdm
 
-    from ..batch.running import FAILED, in_words, run_lines, save_summary
+    from ..batch.running import FAILED_STATE, in_words, run_lines, save_summary
     from ..workers import share_of_cores
 
     if jobs is not None and scheduler is not None:
@@ -81,7 +83,7 @@ def batch(
             for result in lines:
                 results.append(result)
                 bar.update()
-                if result.status == FAILED:
+                if result.status == FAILED_STATE:
                     bar.write(
                         f"risorius: {in_one_line(listing)}:{result.job.number}: {result.error}",
                         file=sys.stderr,
@@ -90,7 +92,7 @@ def batch(
     summary = logs / "summary.csv"
     save_summary(summary, results)
     click.echo(in_one_line(summary))
-    if any(result.status == FAILED for result in results):
+    if any(result.status == FAILED_STATE for result in results):
         sys.exit(1)
 
 

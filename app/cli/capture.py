@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import UserError
-from ..refining.presets import PAPERS_PRESET, STATIC, Refinement
+from ..refining.presets import PAPERS_PRESET, STATIC_REFINER, Refinement
 from ..text import in_one_line
 from .help import GroupedCommand
 from .options import (
@@ -22,7 +22,7 @@ from .options import (
     packed,
     played,
 )
-from .value_types import MAP_BACKGROUND, PATH, BackgroundName, FiniteRange, Size, Times
+from .value_types import MAP_BACKGROUND, PATH_TYPE, BackgroundName, FiniteRange, Size, Times
 
 if TYPE_CHECKING:
     from risorius import render
@@ -46,7 +46,7 @@ class Filming:
     )
     compare: str | None = option(
         is_flag=False,
-        flag_value=STATIC,
+        flag_value=STATIC_REFINER,
         metavar="[NAME,...]",
         help="Looks or refiners to show on the left; without a name the unrefined mesh.",
     )
@@ -163,10 +163,10 @@ class Filming:
 @click.option(
     "-o",
     "--output",
-    type=PATH,
+    type=PATH_TYPE,
     help="The film: out.mp4, .webm, .gif or .webp; a .png; or a folder of frames.",
 )
-@click.option("--sheet", type=PATH, help="A .png with the named poses side by side.")
+@click.option("--sheet", type=PATH_TYPE, help="A .png with the named poses side by side.")
 @SCENE_OPTION
 @SOUND_OPTION
 @packed(Filming)
@@ -188,7 +188,7 @@ def capture(
     played, or --set AU12=0.8 holds a pose.
     """
     from ..capture import capture as film_of
-    from ..capture.outputs import WITH_SOUND
+    from ..capture.outputs import SOUND_FILM_SUFFIXES
     from ..files import check_apart
     from ..passes.labels import files_beside
 
@@ -196,9 +196,10 @@ def capture(
     if output and filming.passes is not None:
         written += files_beside(output)
     check_apart(written, (script, sound, drawing.light, *drawing.files))
-    if sound is not None and (output is None or output.suffix.lower() not in WITH_SOUND):
+    if sound is not None and (output is None or output.suffix.lower() not in SOUND_FILM_SUFFIXES):
         raise UserError(
-            f"--sound {sound}: only films with sound can hold it; end -o in {', '.join(WITH_SOUND)}"
+            f"--sound {sound}: only films with sound can hold it; end -o in "
+            f"{', '.join(SOUND_FILM_SUFFIXES)}"
         )
     performance = played(script, scene, settings=settings, sound=sound, quiet=filming.quiet)
     is_recording = script is not None and script.suffix.lower() != ".toml"
@@ -229,12 +230,12 @@ def demo() -> None:
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
     from ..performances import examples, script_for
-    from ..scenes import COARSE, called_head
+    from ..scenes import COARSE_NAME, called_head
 
     clay = render.Style(textured=False, albedo=render.CLAY)
-    beside = Refinement(refiner=STATIC), Refinement(PAPERS_PRESET)
+    beside = Refinement(refiner=STATIC_REFINER), Refinement(PAPERS_PRESET)
     camera = "-32,3,1.6"  # a close three-quarter view
-    still = CaptureOptions(beside=beside, camera=camera, style=clay, head=called_head(COARSE))
+    still = CaptureOptions(beside=beside, camera=camera, style=clay, head=called_head(COARSE_NAME))
     wired = replace(clay, colour_by=render.ColourBy.SPLIT_WIRES)
     speech = next(path for path in examples("face") if path.stem == "speech")
     script = script_for(speech, None)

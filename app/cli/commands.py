@@ -15,7 +15,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..live.protocols import LOOPBACK, PROTOCOLS, Listening
+from ..live.protocols import LOOPBACK_ADDRESS, PROTOCOLS, Listening
 from ..playback import Playback
 from ..text import counted, in_one_line
 from .batch import batch
@@ -36,7 +36,7 @@ from .options import (
     with_playback,
 )
 from .rig import rig
-from .value_types import PATH, Size
+from .value_types import PATH_TYPE, Size
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
@@ -56,7 +56,7 @@ class Live:
         type=click.IntRange(1, 65535), help="Port to listen on; by default the protocol's own."
     )
     address: str = option(
-        default=LOOPBACK,
+        default=LOOPBACK_ADDRESS,
         show_default=True,
         help="Address of this computer to listen on. 0.0.0.0 listens on all its networks.",
     )
@@ -85,7 +85,7 @@ class Live:
 @click.command(cls=GroupedCommand)
 @click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--scene", type=SCENE_NAMES, help="The scene to animate; by default the face.")
-@click.option("--script", type=PATH, help="The script or recording that the space key plays.")
+@click.option("--script", type=PATH_TYPE, help="The script or recording that the space key plays.")
 @SOUND_OPTION
 @QUIET_OPTION
 @packed(Live)
@@ -119,12 +119,15 @@ def view(
 
 
 @click.command()
-@click.argument("recording", type=PATH, required=False)
+@click.argument("recording", type=PATH_TYPE, required=False)
 @click.option(
     "--port", type=click.IntRange(1, 65535), help="Port to send to; by default the protocol's own."
 )
 @click.option(
-    "--address", default=LOOPBACK, show_default=True, help="Address of the receiving computer."
+    "--address",
+    default=LOOPBACK_ADDRESS,
+    show_default=True,
+    help="Address of the receiving computer.",
 )
 @click.option("--loop", is_flag=True, help="Repeat until Ctrl-C.")
 def send(recording: Path | None, port: int | None, address: str, loop: bool) -> None:
@@ -147,7 +150,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("script", type=PATH)
+@click.argument("script", type=PATH_TYPE)
 @click.option("--size", type=Size(), help="Size of the window; by default its last size.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND_OPTION
@@ -167,8 +170,8 @@ def replay(
 
 
 @click.command()
-@click.argument("recording", type=PATH)
-@click.option("-o", "--output", type=PATH, required=True, help="The script: script.toml.")
+@click.argument("recording", type=PATH_TYPE)
+@click.option("-o", "--output", type=PATH_TYPE, required=True, help="The script: script.toml.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing script.")
 @QUIET_OPTION
 @with_playback

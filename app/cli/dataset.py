@@ -10,7 +10,7 @@ import click
 from ..errors import UserError
 from ..text import counted, in_one_line
 from .options import SILENT_OPTION, printing
-from .value_types import PATH, Size
+from .value_types import PATH_TYPE, Size
 
 
 @click.command()
@@ -27,10 +27,10 @@ from .value_types import PATH, Size
     show_default=True,
     help="Number of the first sample.",
 )
-@click.option("-o", "--output", type=PATH, required=True, help="The folder of the set.")
+@click.option("-o", "--output", type=PATH_TYPE, required=True, help="The folder of the set.")
 @click.option(
     "--sample",
-    type=PATH,
+    type=PATH_TYPE,
     help="A table of expressions and poses, in place of the one that --sample-table prints.",
 )
 @click.option(
@@ -59,7 +59,7 @@ from .value_types import PATH, Size
 )
 @click.option(
     "--light",
-    type=PATH,
+    type=PATH_TYPE,
     help="A light map (.hdr or .exr), or a folder of light maps; by default the lights of the "
     "table.",
 )

@@ -17,8 +17,8 @@ from ..errors import UserError
 from ..sound.decoding import ffmpeg
 from ..text import in_one_line
 
-FFMPEG_TIMEOUT = 20.0  # [s] for ffmpeg to report its version
-EXTRAS = {
+VERSION_TIMEOUT = 20.0  # [s] for ffmpeg to report its version
+MODULES_OF_EXTRAS = {
     "window": ("imgui_bundle", "glfw", "miniaudio"),
     "films": ("imageio_ffmpeg",),
     "live": ("pythonosc",),
@@ -114,8 +114,10 @@ def _names() -> list[str]:
 
 def _extras() -> str:
     """Return a line with the installed extras, and the command to install missing extras."""
-    missing = [name for name, modules in EXTRAS.items() if not all(map(_is_there, modules))]
-    there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
+    missing = [
+        name for name, modules in MODULES_OF_EXTRAS.items() if not all(map(_is_there, modules))
+    ]
+    there = ", ".join(name for name in MODULES_OF_EXTRAS if name not in missing) or "none"
     cure = (
         f"; for the others, in the checkout: pip install '.[{','.join(missing)}]'"
         if missing
@@ -142,7 +144,7 @@ def _films() -> tuple[bool, str]:
             capture_output=True,
             text=True,
             errors="replace",
-            timeout=FFMPEG_TIMEOUT,
+            timeout=VERSION_TIMEOUT,
             check=True,
         )
     except (UserError, OSError, subprocess.SubprocessError) as error:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import UserError
-from ..export.formats import FORMATS, ExportRequest, check_request, format_for
+from ..export.formats import MOTION_FORMATS, ExportRequest, check_request, format_for
 from ..export.formats import export as write
 from ..text import in_one_line
 from .help import GroupedCommand
 from .options import SCENE_OPTION, SCRIPT_ARGUMENT, SETTINGS_OPTION, Subject, option, packed, played
-from .value_types import PATH, FiniteRange
+from .value_types import PATH_TYPE, FiniteRange
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
@@ -26,7 +26,7 @@ class Exporting:
 
     name: str | None = option(
         "--as",
-        type=click.Choice([each.name for each in FORMATS]),
+        type=click.Choice([each.name for each in MOTION_FORMATS]),
         help="The format, if the name of the output does not show it. obj is a folder with a file "
         "for each frame.",
     )
@@ -65,7 +65,9 @@ class Exporting:
 @click.command(cls=GroupedCommand)
 @SCRIPT_ARGUMENT
 @SETTINGS_OPTION
-@click.option("-o", "--output", type=PATH, required=True, help="The file; with --as also a folder.")
+@click.option(
+    "-o", "--output", type=PATH_TYPE, required=True, help="The file; with --as also a folder."
+)
 @SCENE_OPTION
 @packed(Exporting)
 @packed(Subject)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import click
 
-HEADINGS: Mapping[str, tuple[str, ...]] = {  # names of parameters, in the order of the help
+# Names of parameters, in the order of the help.
+OPTIONS_BY_HEADING: Mapping[str, tuple[str, ...]] = {
     "Output": (
         *("output", "name", "sheet", "size", "fps", "times", "compare", "passes"),
         *("refined", "overwrite", "once", "quiet"),
@@ -73,7 +74,7 @@ class GroupedCommand(RenewedCommand):
         options = [each for each in self.get_params(ctx) if isinstance(each, click.Option)]
         records = {each.name: each.get_help_record(ctx) for each in options}
         rows = {name: record for name, record in records.items() if record is not None}
-        for heading, names in HEADINGS.items():
+        for heading, names in OPTIONS_BY_HEADING.items():
             group = [rows.pop(name) for name in names if name in rows]
             if heading == "Output" and "output" not in records:
                 heading = "Window"

@@ -15,8 +15,8 @@ from click.core import ParameterSource
 from ..errors import UserError
 from ..playback import LEAD_TIME, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
-from .styles import LIGHT_NAMES, STRUCTURES, STYLE_WORDS, anatomy_in, style_in
-from .value_types import PATH, FiniteRange, HeadName
+from .styles import LIGHT_NAMES, STRUCTURE_NAMES, STYLE_WORDS, anatomy_in, style_in
+from .value_types import PATH_TYPE, FiniteRange, HeadName
 
 if TYPE_CHECKING:
     from risorius import render
@@ -29,11 +29,13 @@ if TYPE_CHECKING:
 Command = Callable[..., Any]
 SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND_OPTION = click.option(
-    "--sound", type=PATH, help="The sound: a WAV, an MP3, another sound file, or a film with sound."
+    "--sound",
+    type=PATH_TYPE,
+    help="The sound: a WAV, an MP3, another sound file, or a film with sound.",
 )
 QUIET_OPTION = click.option("--quiet", is_flag=True, help="Print no report of a recording.")
 SILENT_OPTION = click.option("--quiet", is_flag=True, help="No progress bar.")
-SCRIPT_ARGUMENT = click.argument("script", type=PATH, required=False)
+SCRIPT_ARGUMENT = click.argument("script", type=PATH_TYPE, required=False)
 SETTINGS_OPTION = click.option(
     "--set",
     "settings",
@@ -93,7 +95,7 @@ class Subject:
         "maria); or coarse, the built-in head with a quarter of its triangles.",
     )
     landmarks: Path | None = option(
-        type=PATH,
+        type=PATH_TYPE,
         help="The 68 iBug landmarks of --head, as JSON. Heads of MakeHuman, ICT-FaceKit and "
         "MediaPipe need none.",
     )
@@ -161,7 +163,7 @@ class Drawing(Subject):
 
     anatomy: str | None = option(
         is_flag=False,
-        flag_value=",".join(STRUCTURES),
+        flag_value=",".join(STRUCTURE_NAMES),
         metavar="[NAME,...]",
         help="Draw muscles, skull or both under translucent skin. opacity=0..1: opacity of the "
         "skin, 0.25 by default. dissect=left or right: only this side of the subject has "
@@ -177,7 +179,7 @@ class Drawing(Subject):
     )
 
     light: Path | None = option(
-        type=PATH,
+        type=PATH_TYPE,
         help="A light map (.hdr or .exr), twice as wide as high. Its "
         "middle lies behind the head. --style light=NAME chooses a built-in one.",
     )
@@ -227,12 +229,12 @@ class Drawing(Subject):
 
     def anatomy_view(self) -> AnatomyView:
         """Return the structures visible through the skin; raise UserError for unknown words."""
-        from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
+        from ..anatomy import SKIN_ALONE, SKIN_OPACITY, AnatomyView
 
         if self.anatomy is None:
             return SKIN_ALONE
         structures, opacity, side = anatomy_in(self.anatomy)
-        return AnatomyView(structures, OPACITY if opacity is None else opacity, side)
+        return AnatomyView(structures, SKIN_OPACITY if opacity is None else opacity, side)
 
 
 GAIN_OPTION = click.option(

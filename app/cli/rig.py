@@ -12,7 +12,7 @@ from ..errors import UserError
 from ..text import counted, in_one_line
 from .help import RenewedCommand
 from .options import option, packed
-from .value_types import PATH, HeadName
+from .value_types import PATH_TYPE, HeadName
 
 if TYPE_CHECKING:
     from ..script import Script
@@ -23,7 +23,7 @@ class Rigging:
     """Options that only `rig` has."""
 
     landmarks: Path | None = option(
-        type=PATH,
+        type=PATH_TYPE,
         help="The 68 iBug landmarks of HEAD, as JSON. Heads of MakeHuman, ICT-FaceKit and "
         "MediaPipe need none.",
     )
@@ -60,7 +60,7 @@ class Rigging:
         help="Add at most this many shapes, each of which corrects the sum of two shapes.",
     )
     take: Path | None = option(
-        type=PATH,
+        type=PATH_TYPE,
         help="A recording or script on which sums of shapes are compared with the simulation, and "
         "for which --correctives are chosen; by default a few built-in words.",
     )
@@ -70,7 +70,11 @@ class Rigging:
 @click.command(cls=RenewedCommand)
 @click.argument("head", metavar="[HEAD]", type=HeadName(), required=False)
 @click.option(
-    "-o", "--output", type=PATH, required=True, help="The file avatar.glb; with --as obj a folder."
+    "-o",
+    "--output",
+    type=PATH_TYPE,
+    required=True,
+    help="The file avatar.glb; with --as obj a folder.",
 )
 @packed(Rigging)
 def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:

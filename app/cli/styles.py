@@ -9,11 +9,11 @@ from typing import Any
 
 from ..errors import UserError
 
-STRUCTURES = ("muscles", "skull")  # a copy of anatomy.STRUCTURES, which is imported later
+STRUCTURE_NAMES = ("muscles", "skull")  # a copy of anatomy.STRUCTURES, which is imported later
 # A copy of the names in render.LIGHTS, which is imported later.
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard", "clouds", "room", "street")
-SKINS = ("textured", "plain", "clay")
-SIDES = ("both", "left", "right")
+SKIN_NAMES = ("textured", "plain", "clay")
+SIDE_NAMES = ("both", "left", "right")
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ class Words:
 STYLE_WORDS = Words(
     "--style",
     ("wireframe", "splits", "wires"),
-    {"skin": SKINS, "light": LIGHT_NAMES},
+    {"skin": SKIN_NAMES, "light": LIGHT_NAMES},
     ("wrinkles",),
 )
-ANATOMY_WORDS = Words("--anatomy", STRUCTURES, {"dissect": SIDES}, ("opacity",))
+ANATOMY_WORDS = Words("--anatomy", STRUCTURE_NAMES, {"dissect": SIDE_NAMES}, ("opacity",))
 
 
 def style_in(settings: Sequence[str]) -> dict[str, Any]:
@@ -95,5 +95,5 @@ def style_in(settings: Sequence[str]) -> dict[str, Any]:
 def anatomy_in(text: str) -> tuple[tuple[str, ...], float | None, str]:
     """Return the structures that `--anatomy` shows, the skin's opacity or None, and the side."""
     values = ANATOMY_WORDS.read([text])
-    structures = tuple(name for name in STRUCTURES if name in values)
-    return structures or STRUCTURES, values.get("opacity"), values.get("dissect", "both")
+    structures = tuple(name for name in STRUCTURE_NAMES if name in values)
+    return structures or STRUCTURE_NAMES, values.get("opacity"), values.get("dissect", "both")

@@ -14,10 +14,10 @@ import click
 if TYPE_CHECKING:
     from risorius import render
 
-PATH = click.Path(path_type=Path)
-LEAST_SIDE = 16  # [pixels]
+PATH_TYPE = click.Path(path_type=Path)
+SHORTEST_SIDE = 16  # [pixels]
 LONGEST_SIDE = 8192  # [pixels]
-BACKGROUNDS = ("light", "dark", "white", "black")  # constants of `render`
+BACKGROUND_NAMES = ("light", "dark", "white", "black")  # constants of `render`
 HEAD_NAMES = ("ada", "kofi", "maria", "coarse")  # heads in `assets`, which is imported later
 
 
@@ -35,11 +35,11 @@ class Size(click.ParamType[tuple[int, int]]):
         written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
         if written:
             size = (int(written[1]), int(written[2]))
-            if all(LEAST_SIDE <= side <= LONGEST_SIDE for side in size):
+            if all(SHORTEST_SIDE <= side <= LONGEST_SIDE for side in size):
                 return size
         self.fail(
-            f"'{value}' is not a size; write width x height, each {LEAST_SIDE} to {LONGEST_SIDE}, "
-            "as in 1280x720"
+            f"'{value}' is not a size; write width x height, each {SHORTEST_SIDE} to "
+            f"{LONGEST_SIDE}, as in 1280x720"
         )
 
 
@@ -67,15 +67,15 @@ class BackgroundName(click.ParamType["render.Background | str | None"]):
             return None
         if word == MAP_BACKGROUND:
             return word
-        if word in BACKGROUNDS:
+        if word in BACKGROUND_NAMES:
             named: render.Background = getattr(render, word.upper())
             return named
         try:
             red, green, blue = (part / 255.0 for part in PIL.ImageColor.getrgb(word)[:3])
         except ValueError:
             self.fail(
-                f"'{value}' is not a background; write {', '.join(BACKGROUNDS)}, {MAP_BACKGROUND}, "
-                "transparent, or a colour such as #00b140 or grey"
+                f"'{value}' is not a background; write {', '.join(BACKGROUND_NAMES)}, "
+                f"{MAP_BACKGROUND}, transparent, or a colour such as #00b140 or grey"
             )
         return render.Background((red, green, blue), (red, green, blue))
 
@@ -134,7 +134,7 @@ class HeadName(click.ParamType["Path | int | str"]):
             return str(value)
         if str(value).isdecimal():
             return click.IntRange(0, 2**53 - 1).convert(value, param, ctx)
-        path: Path = PATH.convert(value, param, ctx)
+        path: Path = PATH_TYPE.convert(value, param, ctx)
         if not path.suffix and not path.exists():
             known = ", ".join(HEAD_NAMES)
             allowed = f"give {known}, the number of a person, or a mesh such as anna.obj"

@@ -19,9 +19,9 @@ SIGNED_CONTROLS = (  # positive values turn to one side, negative values to the 
     "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
 )  # fmt: skip
 # Their sides are directions of one motion, so equal values cancel.
-OPPOSITES = ("AU30", "lips_sideways", "jaw", "mouth")
+ONE_MOTION_BASES = ("AU30", "lips_sideways", "jaw", "mouth")
 CACHE_SIZE = 4096  # cached names; panels need the parts of all their names in each frame
-_TWINS = {  # mirrored controls whose names show no side: eyes turn left, right ...
+MIRROR_NAMES = {  # mirrored controls whose names show no side: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
     "contempt_right": "contempt",
@@ -40,8 +40,8 @@ def split_side(name: str) -> tuple[str, str]:
 @functools.lru_cache(maxsize=CACHE_SIZE)
 def twin_of(name: str) -> str:
     """Return the name of the mirrored control; a control in the middle mirrors itself."""
-    if name in _TWINS:
-        return _TWINS[name]
+    if name in MIRROR_NAMES:
+        return MIRROR_NAMES[name]
     base, side = split_side(name)
     for left, right in SIDE_ENDINGS:
         if side in (left, right):
@@ -66,7 +66,12 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
         base, side = split_side(name)
         twin = twin_of(name)
         is_direction = not side and split_side(twin)[0] != name  # such as AU61 and AU62
-        if is_direction or base in OPPOSITES or base.startswith(sideways) or twin not in values:
+        if (
+            is_direction
+            or base in ONE_MOTION_BASES
+            or base.startswith(sideways)
+            or twin not in values
+        ):
             continue
         if (side.strip("_").lower() or "left") == source:
             result[twin] = value

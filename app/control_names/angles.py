@@ -2,7 +2,7 @@
 
 GAZE_ANGLE = 30.0  # [degrees]
 # [degrees] by control; a neck turns no farther without the shoulders.
-DEGREES = {
+FULL_ANGLES = {
     "head_yaw": 45.0,
     "head_pitch": 30.0,
     "head_roll": 30.0,

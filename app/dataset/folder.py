@@ -23,7 +23,7 @@ from ..files import cannot_be_written, check_links, save_text
 from ..staging import is_staging_folder, locked
 from .shards import SHARD_PATTERN, read_shard
 
-UNFINISHED = ".unfinished"
+UNFINISHED_SUFFIX = ".unfinished"
 TOKEN_PREFIX = "seen-"  # prefix of files by which workers recognise the set's folder
 LENGTHS_LABEL = "files"  # label that holds the lengths of a sample's other files [bytes]
 
@@ -44,7 +44,7 @@ class SetFolder:
     @property
     def log(self) -> Path:
         """The file that collects output of processes; it is removed when the set is complete."""
-        return self.path / UNFINISHED / "log"
+        return self.path / UNFINISHED_SUFFIX / "log"
 
     @contextlib.contextmanager
     def opened(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
@@ -59,7 +59,7 @@ class SetFolder:
         with cannot_be_written(self.path):
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
-            unfinished = self.path / UNFINISHED
+            unfinished = self.path / UNFINISHED_SUFFIX
             if unfinished.is_symlink():  # the linked folder may hold foreign files
                 raise UserError(f"{unfinished}: is a link; remove it")
             unfinished.mkdir(exist_ok=True)
@@ -87,7 +87,7 @@ class SetFolder:
         begun = self.path / self.BEGUN
         if not begun.exists():
             items = (item for item in self.path.iterdir() if not is_staging_folder(item))
-            if any(item.name != UNFINISHED for item in items):
+            if any(item.name != UNFINISHED_SUFFIX for item in items):
                 raise UserError(
                     f"{self.path}: is not empty, and no data set; choose another folder"
                 )
@@ -146,7 +146,7 @@ class SetFolder:
         """
         name = name_of(index)
         with cannot_be_written(self.path / name):
-            part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED))
+            part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED_SUFFIX))
             try:
                 write(part / f"{name}.png")
                 _add_lengths(part / f"{name}.json")

@@ -12,12 +12,12 @@ import numpy as np
 
 from risorius import render
 
-from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
+from ..motion.curves import ACTION_UNIT_LAYER, ARKIT_LAYER, solved
 from ..passes.labels import labels_of
 from ..scenes import FaceScene
 from .openings import apertures
 
-DECIMAL_PLACES = 5  # decimal places of labels
+LABEL_DECIMALS = 5  # decimal places of labels
 
 
 def labels_of_face(
@@ -32,7 +32,7 @@ def labels_of_face(
     size: width and height of the picture [pixels]. depth: depth map of the picture, (H, W).
     covered: flags of pixels where a mask hides landmarks, (H, W); None: no mask.
     """
-    arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
+    arkit = solved(scene, ARKIT_LAYER, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth, covered)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
     # Positions without the rotation of the head.
@@ -40,7 +40,7 @@ def labels_of_face(
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": action_units(scene),
-        "arkit": {name: round(float(value[0]), DECIMAL_PLACES) for name, value in arkit.items()},
+        "arkit": {name: round(float(value[0]), LABEL_DECIMALS) for name, value in arkit.items()},
         "apertures": apertures(positions, scene.faces, positions[scene.landmarks]),
         "face_box": np.concatenate([low, high - low]).round(3).tolist(),
         **labels,
@@ -55,12 +55,12 @@ def action_units(scene: FaceScene) -> dict[str, float]:
     side, because FACS scores it without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
-    found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
+    found = solved(scene, ACTION_UNIT_LAYER, sums, _in_one_frame(scene.values))
     units = {}
-    for name in sorted(scene.simulation.controls.layers[ACTION_UNITS], key=by_number):
+    for name in sorted(scene.simulation.controls.layers[ACTION_UNIT_LAYER], key=by_number):
         names = (name, f"{name}_left", f"{name}_right")
         largest = max(float(found[each][0]) for each in names if each in found)
-        units[name] = round(largest, DECIMAL_PLACES)
+        units[name] = round(largest, LABEL_DECIMALS)
     return units
 
 

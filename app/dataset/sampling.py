@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..control_names.angles import DEGREES
+from ..control_names.angles import FULL_ANGLES
 from .degrading import Degradation
-from .table import BLINK, LETTERS, PERSON_COUNT, SampleTable, Weights, paired_units
+from .table import BLINK_UNIT, INTENSITY_LETTERS, PERSON_COUNT, SampleTable, Weights, paired_units
 
 MOST_UNITS = 7  # greatest number of units in a mixture
 
@@ -80,7 +80,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
     controls = _two_sided(table, sides, controls, face.one_sided)
     for angle in ("yaw", "pitch", "roll"):
         degrees = getattr(table.head, angle) * _bounded_normal(heads)
-        controls[f"head_{angle}"] = degrees / DEGREES[f"head_{angle}"]
+        controls[f"head_{angle}"] = degrees / FULL_ANGLES[f"head_{angle}"]
     aside = [
         getattr(table.eyes, direction) * _bounded_normal(heads)
         for direction in ("horizontal", "vertical")
@@ -194,10 +194,10 @@ class _Face:
 
     def _intensity(self) -> float:
         """Return a random intensity: choose a letter, then a value in its fifth of 0..1."""
-        place = LETTERS.index(chosen(self._random, self._table.letters))
+        place = INTENSITY_LETTERS.index(chosen(self._random, self._table.letters))
         # Values below a quarter of the lowest fifth would be invisible.
         within = self._random.uniform(0.0 if place else 0.25, 1.0)
-        return float((place + within) / len(LETTERS))
+        return float((place + within) / len(INTENSITY_LETTERS))
 
 
 def _blink(
@@ -208,7 +208,7 @@ def _blink(
     closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
         return {}
-    return {BLINK: float(closed)}
+    return {BLINK_UNIT: float(closed)}
 
 
 def _two_sided(
@@ -224,7 +224,7 @@ def _two_sided(
     sides = ("_left", "_right")
     for name, value in controls.items():
         weaker = 1.0 - min(abs(table.sides.difference * _bounded_normal(random)), 1.0)
-        if name not in paired_units() or name == BLINK:
+        if name not in paired_units() or name == BLINK_UNIT:
             result[name] = value
         elif random.random() < one_sided:
             result[name + sides[side]] = value

@@ -19,7 +19,7 @@ from ..cluster import run_on_cluster
 from ..errors import UserError
 from ..files import cannot_be_written
 from ..workers import Send, WorkerPool
-from .folder import TOKEN_PREFIX, UNFINISHED, SetFolder
+from .folder import TOKEN_PREFIX, UNFINISHED_SUFFIX, SetFolder
 from .request import SetRequest
 from .studio import Studio
 
@@ -61,10 +61,10 @@ def make_samples(batch: SampleBatch, send: Send) -> None:
         )
     with contextlib.ExitStack() as stack:
         folder = SetFolder(request.output)
-        is_seen = not batch.token or (folder.path / UNFINISHED / batch.token).exists()
+        is_seen = not batch.token or (folder.path / UNFINISHED_SUFFIX / batch.token).exists()
         if not is_seen:
             own = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="risorius-")))
-            (own / UNFINISHED).mkdir()
+            (own / UNFINISHED_SUFFIX).mkdir()
             folder = SetFolder(own)
         studio = Studio(request)
         for number in batch.numbers:
@@ -90,7 +90,7 @@ def make_on_cluster(
         return
     token = f"{TOKEN_PREFIX}{secrets.token_hex(8)}"
     with cannot_be_written(folder.path):
-        (folder.path / UNFINISHED / token).touch()
+        (folder.path / UNFINISHED_SUFFIX / token).touch()
     sent = [replace(batch, token=token) for batch in batches]
     results = run_on_cluster(_make_on_worker, sent, scheduler)
     with contextlib.closing(results):

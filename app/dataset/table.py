@@ -14,15 +14,15 @@ from typing import Annotated, Any
 
 from risorius import assets
 from risorius.assets.identities import (
-    COLLARS,
+    COLLAR_BUILDERS,
     DARKEST_TONE,
-    FRAMES,
+    GLASSES_FRAMES,
     LIGHTEST_TONE,
     MASK_COLOURS,
     SHIRT_COLOURS,
     Population,
 )
-from risorius.assets.identities.hair import CUTS
+from risorius.assets.identities.hair import HAIR_CUTS
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.render import LIGHTS
 from risorius.schema import REST_KEY, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
@@ -30,8 +30,8 @@ from risorius.schema import REST_KEY, MadeFrom, OneOf, Record, Within, called, p
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
 
-LETTERS = ("A", "B", "C", "D", "E")
-BLINK = "AU45"
+INTENSITY_LETTERS = ("A", "B", "C", "D", "E")
+BLINK_UNIT = "AU45"
 NOTHING_WORN = "none"  # in the table: no glasses, or no mask
 PERSON_COUNT = 1_000_000  # number of persons of a seed; other seeds have other persons
 Weights = Mapping[str, float]
@@ -45,7 +45,9 @@ def _layer(title: str) -> Mapping[str, Any]:
 def _units() -> list[str]:
     # Other sections of the table move eyes and head.
     units_of_eyes_and_head = {f"AU{number}" for number in range(51, 65)}
-    return [unit for unit in _layer("Action units") if unit not in {BLINK, *units_of_eyes_and_head}]
+    return [
+        unit for unit in _layer("Action units") if unit not in {BLINK_UNIT, *units_of_eyes_and_head}
+    ]
 
 
 def _shares(weights: dict[str, float]) -> Weights:
@@ -181,7 +183,7 @@ class SampleTable(Record):
     """The sections of aus.toml, whose comments are their documentation."""
 
     kinds: Annotated[Weights, _drawn_from(("neutral", "expression", "mixture", "speech", "unit"))]
-    letters: Annotated[Weights, _drawn_from(LETTERS)]
+    letters: Annotated[Weights, _drawn_from(INTENSITY_LETTERS)]
     expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
     units: Annotated[Weights, _drawn_from(_units)]
     together: dict[Unit, dict[Unit, Fraction]]
@@ -193,11 +195,11 @@ class SampleTable(Record):
     camera: Camera
     persons: Persons
     irises: Annotated[Weights, _drawn_from(IRIS_FREQUENCIES)]
-    cuts_of_women: Annotated[Weights, _drawn_from(CUTS)]
-    cuts_of_men: Annotated[Weights, _drawn_from(CUTS)]
+    cuts_of_women: Annotated[Weights, _drawn_from(HAIR_CUTS)]
+    cuts_of_men: Annotated[Weights, _drawn_from(HAIR_CUTS)]
     shirts: Annotated[Weights, _drawn_from(SHIRT_COLOURS)]
-    collars: Annotated[Weights, _drawn_from(COLLARS)]
-    glasses: Annotated[Weights, _drawn_from((NOTHING_WORN, *FRAMES))]
+    collars: Annotated[Weights, _drawn_from(COLLAR_BUILDERS)]
+    glasses: Annotated[Weights, _drawn_from((NOTHING_WORN, *GLASSES_FRAMES))]
     masks: Annotated[Weights, _drawn_from((NOTHING_WORN, *MASK_COLOURS))]
     lights: Annotated[Weights, _drawn_from(LIGHTS)]
     degradations: Degradations

@@ -96,7 +96,7 @@ class Format:
 
 
 MESH_FILES = (".obj", ".mtl", "_skin.png")  # mesh, materials and the skin's picture
-FORMATS = (
+MOTION_FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
     Format("usd", "USD", (".usdz",), "usd:write_usd", changes=True),
     Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH_FILES),
@@ -110,13 +110,13 @@ FORMATS = (
 def format_for(output: Path, name: str | None) -> Format:
     """Return the format of an output by its name or `--as`; raises UserError if there is none."""
     suffix = output.suffix.lower()
-    known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
-    for each in FORMATS:
+    known = dict.fromkeys(suffix for each in MOTION_FORMATS for suffix in each.suffixes)
+    for each in MOTION_FORMATS:
         if each.name == name or (name is None and suffix in each.suffixes):
             _check_suffix(output, each, known)
             return each
     allowed = ", ".join(known)
-    folders = " or ".join(f"--as {each.name}" for each in FORMATS if not each.suffixes)
+    folders = " or ".join(f"--as {each.name}" for each in MOTION_FORMATS if not each.suffixes)
     wrong = f"unknown suffix '{suffix}'." if suffix else "has no suffix."
     raise UserError(f"{output}: {wrong} Allowed are {allowed}, and folders with {folders}")
 
@@ -138,12 +138,12 @@ def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
 def check_request(output: Path, chosen: Format, request: ExportRequest) -> None:
     """Raise UserError, before any work, if the requested output is impossible."""
     if request.refinement is not None and not chosen.refines:
-        names = ", ".join(each.name for each in FORMATS if each.refines)
+        names = ", ".join(each.name for each in MOTION_FORMATS if each.refines)
         raise UserError(f"--refined: cannot be written as {chosen.title}; allowed are {names}")
     if request.changes and request.refinement is None:
         raise UserError("--changing needs --refined; add it, or leave out --changing")
     if request.changes and not chosen.changes:
-        names = ", ".join(each.name for each in FORMATS if each.changes)
+        names = ", ".join(each.name for each in MOTION_FORMATS if each.changes)
         raise UserError(f"--changing: cannot be written as {chosen.title}; allowed are {names}")
     if request.named_only and chosen.name != "gltf":
         raise UserError(f"--named-only: cannot be written as {chosen.title}; allowed is gltf")

@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from risorius.geometry.arrays import Floats64
 
-from ..recordings.names import ARKIT
+from ..recordings.names import ARKIT_SHAPES
 from ..rig.bodies import Body, PartBody, Shaped, Skin, moving, poses_of
 from ..rig.curves import nearest_weights, shape_curves
 from ..rig.glb import Glb
-from ..rig.poses import CRANIUM, Pose, without_head_pose
+from ..rig.poses import CRANIUM_BONE, Pose, without_head_pose
 from ..rig.scene_file import add_pieces
 from ..rig.scene_meshes import Piece
 from ..rig.skeleton import Skeleton
@@ -32,7 +32,7 @@ from ..scenes import FaceScene
 from ..text import as_text
 from .clip import Clip
 from .formats import ExportRequest
-from .morphs import TOLERANCE, Morphs, decompose, follow
+from .morphs import MORPH_TOLERANCE, Morphs, decompose, follow
 from .refined import RefinedSkin
 
 Poses = Mapping[str, tuple[Pose, Pose]]
@@ -58,7 +58,7 @@ class Moving:
     @property
     def words(self) -> str:
         """Describe the errors to the user in one line."""
-        counts = [sum(name in ARKIT for name in piece.names) for piece in self.pieces]
+        counts = [sum(name in ARKIT_SHAPES for name in piece.names) for piece in self.pieces]
         named = max(counts)
         others = max(
             len(piece.names) - count for piece, count in zip(self.pieces, counts, strict=True)
@@ -79,7 +79,7 @@ def write_gltf(clip: Clip, part: Path, request: ExportRequest) -> str:
     roots = add_pieces(glb, clip.scene, motion.pieces, skeleton)
     title = as_text(clip.script.title) or "motion"
     part.write_bytes(glb.to_bytes(title, [*skeleton.roots, *roots]))
-    if motion.off[motion.farthest] > TOLERANCE and not request.named_only:
+    if motion.off[motion.farthest] > MORPH_TOLERANCE and not request.named_only:
         return f"{motion.words}: the motion needs more targets than readers take"
     return motion.words
 
@@ -91,7 +91,7 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
     face = clip.scene.face
     if face is not None:
         scene = FaceScene(face.head, face.clone())
-        poses = dict(poses_of(scene, ARKIT, progress=request.progress))
+        poses = dict(poses_of(scene, ARKIT_SHAPES, progress=request.progress))
         weights = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     pieces = []
     off: dict[str, Floats64] = {}
@@ -143,7 +143,7 @@ def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Fl
         surface,
         bone,
         surface.normals_of(surface.rest, None),
-        ARKIT[:count],
+        ARKIT_SHAPES[:count],
         shaped.targets,
         shaped.bends,
         weights[:, :count],
@@ -189,7 +189,7 @@ def _remove_head_motion(clip: Clip, shapes: Floats64, *, are_positions: bool = T
     if face is None:
         return
     head_weight = clip.skin.carried(face.head_weight)
-    for shape, bone in zip(shapes, clip.bones[CRANIUM], strict=True):
+    for shape, bone in zip(shapes, clip.bones[CRANIUM_BONE], strict=True):
         matrix = bone.copy()
         if not are_positions:
             matrix[:3, 3] = 0.0

@@ -18,8 +18,8 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-TOLERANCE = 0.098  # [mm]: largest error; with single precision it stays below 0.1
-LEAST_MOTION = 1e-6  # [mm]: a target that moves every vertex by less is left out
+MORPH_TOLERANCE = 0.098  # [mm]: largest error; with single precision it stays below 0.1
+LEAST_TARGET_MOTION = 1e-6  # [mm]: a target that moves every vertex by less is left out
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Morphs:
 
 
 def decompose(moved: Floats64, most: int = 198) -> Morphs:
-    """Return few targets with an error of at most TOLERANCE.
+    """Return few targets with an error of at most MORPH_TOLERANCE.
 
     moved: displacements of each vertex from rest in each frame [mm], shape (N, V, 3). If `most`
     targets do not suffice, the error is larger. Some readers count targets in a byte, and the 52
@@ -45,7 +45,7 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     # Components below this share of the largest component are rounding errors.
-    rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), LEAST_MOTION)).sum())
+    rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), LEAST_TARGET_MOTION)).sum())
     curves = curves[:, :rank]
     shapes = lengths[:rank, None] * shapes[:rank]
     limit = min(rank, most - 1)
@@ -63,7 +63,7 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
         while low < high:
             count = (low + high) // 2
             off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
-            if off.max() <= TOLERANCE:
+            if off.max() <= MORPH_TOLERANCE:
                 high = count
             else:
                 low = count + 1
@@ -71,11 +71,11 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
         # In each round, a vertex keeps at least the root of 0.03 of its relative weight.
-        ratio = left / max(left.max(), LEAST_MOTION)
+        ratio = left / max(left.max(), LEAST_TARGET_MOTION)
         weighing *= np.sqrt(np.maximum(ratio, 0.03))
         weighing /= weighing.max()
         low = max(high - 15, 0)  # a round saves at most 15 shapes
-    return min(found, key=lambda each: (max(each.error, TOLERANCE), len(each.targets)))
+    return min(found, key=lambda each: (max(each.error, MORPH_TOLERANCE), len(each.targets)))
 
 
 def follow(weights: Floats64, changes: Floats64) -> Floats64:
@@ -104,7 +104,7 @@ def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     shifted = (curves - lowest) / np.where(lengths > 0.0, lengths, 1.0)
     unit_weights = np.clip(shifted, 0.0, 1.0)
     weights = np.column_stack([np.ones(len(moved)), unit_weights])
-    kept = np.abs(targets).max(axis=1, initial=0.0) > LEAST_MOTION
+    kept = np.abs(targets).max(axis=1, initial=0.0) > LEAST_TARGET_MOTION
     targets = targets[kept]
     weights = weights[:, kept]
     error = float(_farthest(moved, weights, targets).max())

@@ -17,7 +17,7 @@ import PIL.Image
 
 from risorius.geometry.arrays import Integers32
 
-from ..rig.surface import METRES
+from ..rig.surface import METRES_PER_MILLIMETRE
 from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import FRAME_NAME, ExportRequest
 
@@ -41,7 +41,7 @@ def write_pc2(clip: Clip, part: Path, request: ExportRequest) -> None:
         if number == 0:
             material = _write_material(clip, part.with_suffix(".mtl"))
             _write(part.with_suffix(".obj"), _obj_text(clip, frame, material))
-        points.append(METRES * np.concatenate([surface.points for surface in frame]))
+        points.append(METRES_PER_MILLIMETRE * np.concatenate([surface.points for surface in frame]))
     vertices = len(points[0])
     with part.open("wb") as file:
         head = (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, clip.frame_count)
@@ -76,7 +76,7 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
     for whole, surface in zip(clip.surfaces, frame, strict=True):
         white = np.ones_like(surface.points)
         colours = white if whole.colours is None else whole.colours.astype(np.float64)
-        texts.append(_rows("v", np.hstack([surface.points * METRES, colours])))
+        texts.append(_rows("v", np.hstack([surface.points * METRES_PER_MILLIMETRE, colours])))
         texts.append(_rows("vn", surface.normals))
         uv = surface.uv
         face_uv = surface.face_uv

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..control_names.angles import DEGREES
+from ..control_names.angles import FULL_ANGLES
 from ..recordings.named_columns import OUTWARD_ANGLES
-from ..recordings.names import ARKIT
+from ..recordings.names import ARKIT_SHAPES
 from ..rig.curves import as_seen, shape_curves
 from ..rig.surface import RefinedSurface
 from .clip import Clip
@@ -44,7 +44,7 @@ def write_npz(clip: Clip, part: Path, _: ExportRequest) -> None:
 def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
     """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
     curves = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
-    shapes = dict(zip(ARKIT, curves.T, strict=True))
+    shapes = dict(zip(ARKIT_SHAPES, curves.T, strict=True))
     lowest = as_seen(clip.times, clip.activations)
     other_order = {  # Live Link Face has ARKit's order, except for these
         "jawLeft": "jawRight",
@@ -52,7 +52,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
         "mouthLeft": "mouthRight",
         "mouthRight": "mouthLeft",
     }
-    names = [other_order.get(name, name) for name in ARKIT]
+    names = [other_order.get(name, name) for name in ARKIT_SHAPES]
     still = np.zeros(clip.frame_count)
     # Live Link Face begins names with a capital: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes[name] for name in names}
@@ -71,7 +71,7 @@ def write_arkit(clip: Clip, part: Path, _: ExportRequest) -> None:
         "RightEyeRoll": "",
     }
     for name, control in angle_columns.items():
-        radians = -math.radians(DEGREES.get(control, 0.0))
+        radians = -math.radians(FULL_ANGLES.get(control, 0.0))
         outward = math.radians(
             OUTWARD_ANGLES.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0)
         )

@@ -19,7 +19,7 @@ import PIL.Image
 from risorius.geometry.colour import to_linear
 
 from ..extras import optional_import
-from ..rig.surface import METRES, MovingSurface
+from ..rig.surface import METRES_PER_MILLIMETRE, MovingSurface
 from ..text import as_text
 from .clip import Clip
 from .formats import ExportRequest
@@ -58,7 +58,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
 def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
     """Add the clip to the stage, with a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
-    UsdGeom.SetStageMetersPerUnit(stage, METRES)
+    UsdGeom.SetStageMetersPerUnit(stage, METRES_PER_MILLIMETRE)
     stage.SetTimeCodesPerSecond(clip.frames_per_second)
     stage.SetFramesPerSecond(clip.frames_per_second)
     stage.SetStartTimeCode(0)

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..recordings.calibration import Calibration, gains_of, neutral_now
 from ..recordings.mapping import controls_of
-from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from ..recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES, VISEME_NAMES
 from .frame import LiveFrame
 from .protocols import Listening
 from .receiver import Receiver
@@ -28,7 +28,8 @@ LOST_AFTER = 0.4  # [s] without a frame, so a network may lose ten frames at 30 
 EASING_IN = 0.25  # [s]
 EASING_OUT = 0.6
 CALIBRATION_TIME = 0.5  # [s] of a neutral face
-CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # channels that a sender may use
+# Channels that a sender may use.
+LIVE_CHANNELS = (*ARKIT_SHAPES, *HEAD_ANGLES, *EYE_ANGLES, *VISEME_NAMES)
 
 
 class State(enum.Enum):
@@ -58,7 +59,7 @@ class LiveFace(Receiver):
     ) -> None:
         """Start to listen; raises UserError if this fails. wake: see `Receiver`."""
         listening.protocol.check()
-        gains, default = gains_of(listening.gains, CHANNELS)
+        gains, default = gains_of(listening.gains, LIVE_CHANNELS)
         super().__init__(listening, wake, clock)
         self.calibration = Calibration({}, gains, default, listening.mirror)
         self.channels: dict[str, float] = {}

@@ -19,10 +19,10 @@ import struct
 from collections.abc import Mapping
 
 from ..recordings.named_columns import OUTWARD_ANGLES
-from ..recordings.names import ARKIT
+from ..recordings.names import ARKIT_SHAPES
 from .frame import LiveFrame, readable_subject, set_angle, set_shape
 
-VERSION = 6
+PROTOCOL_VERSION = 6
 VALUE_COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name
 # Channels after the shapes; None for the roll of eyes.
@@ -34,7 +34,7 @@ ANGLE_CHANNELS = (
 
 def parse(packet: bytes) -> LiveFrame | None:
     """Parse a packet in the format above; return None for any other packet."""
-    if packet[:1] != bytes([VERSION]):
+    if packet[:1] != bytes([PROTOCOL_VERSION]):
         return None
     try:
         _, at = _text(packet, 1)
@@ -51,9 +51,9 @@ def parse(packet: bytes) -> LiveFrame | None:
     except (struct.error, ValueError):
         return None
     channels: dict[str, float] = {}
-    for shape, value in zip(ARKIT, values, strict=False):
+    for shape, value in zip(ARKIT_SHAPES, values, strict=False):
         set_shape(channels, shape, value)
-    for angle, value in zip(ANGLE_CHANNELS, values[len(ARKIT) :], strict=True):
+    for angle, value in zip(ANGLE_CHANNELS, values[len(ARKIT_SHAPES) :], strict=True):
         if angle is not None:
             set_angle(channels, angle, -math.degrees(value) - OUTWARD_ANGLES.get(angle, 0.0))
     return LiveFrame(channels, name)
@@ -70,11 +70,11 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
     """Return Live Link Face's packet for these channels; missing channels are 0."""
-    values = [channels.get(name, 0.0) for name in ARKIT]
+    values = [channels.get(name, 0.0) for name in ARKIT_SHAPES]
     for angle in ANGLE_CHANNELS:
         degrees = channels.get(angle or "", 0.0) + OUTWARD_ANGLES.get(angle or "", 0.0)
         values.append(-math.radians(degrees))
-    head = struct.pack(">B", VERSION)
+    head = struct.pack(">B", PROTOCOL_VERSION)
     device = b"risorius"
     for text in (device, subject.encode()[:LONGEST_TEXT]):
         head += struct.pack(">i", len(text)) + text

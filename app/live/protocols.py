@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Parser = Callable[[bytes], LiveFrame | None]  # see frame.py
 
-LOOPBACK = "127.0.0.1"
+LOOPBACK_ADDRESS = "127.0.0.1"
 ANY_ADDRESS = "0.0.0.0"
 
 
@@ -60,7 +60,7 @@ class Listening:
     """
 
     kind: str
-    address: str = LOOPBACK
+    address: str = LOOPBACK_ADDRESS
     port: int | None = None
     gains: tuple[str, ...] = ()
     mirror: bool = False

@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 from ..errors import UserError
 from .frame import MOST_BYTES, LiveFrame
-from .protocols import ANY_ADDRESS, LOOPBACK, Listening, resolved
+from .protocols import ANY_ADDRESS, LOOPBACK_ADDRESS, Listening, resolved
 
 
 class Receiver:
@@ -107,7 +107,7 @@ def _bound_socket(listening: Listening) -> socket.socket:
         opened.close()
         raise UserError(
             f"cannot listen on {address}, port {port}: {error.strerror}; close the program that "
-            f"listens there, choose another --port, or another --address ({LOOPBACK} for this "
-            f"computer only, {ANY_ADDRESS} for its whole network)"
+            f"listens there, choose another --port, or another --address ({LOOPBACK_ADDRESS} for "
+            f"this computer only, {ANY_ADDRESS} for its whole network)"
         ) from None
     return opened

@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable, Mapping
 
 from ..errors import UserError
-from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
+from ..recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES
 from ..recordings.take import Take
 from ..text import in_one_line
 from .livelink import packet_of
 from .protocols import PROTOCOLS, resolved
 
-CARRIED_NAMES = frozenset((*ARKIT, *HEAD_ANGLES, *EYE_ANGLES))
+CARRIED_NAMES = frozenset((*ARKIT_SHAPES, *HEAD_ANGLES, *EYE_ANGLES))
 
 
 class Sender:

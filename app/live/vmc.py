@@ -34,8 +34,8 @@ from risorius.geometry.transforms import angles_of
 
 from .frame import LiveFrame, set_angle, set_shape, shape_named
 
-_BUNDLE = b"#bundle\0"
-_HEADER_LENGTH = len(_BUNDLE) + 8  # the mark and a time, which is ignored
+_BUNDLE_MARK = b"#bundle\0"
+_HEADER_LENGTH = len(_BUNDLE_MARK) + 8  # the mark and a time, which is ignored
 # First bytes of the messages that are read; the library might log errors for other messages.
 _KNOWN_BEGINNING = re.compile(
     rb"/VMC/Ext/(Blend/Val\0\0,s[fdi]\0|Blend/Apply\0{4}(,\0{3})?\Z|Bone/Pos\0{3},sf{7}\0{3})"
@@ -77,7 +77,7 @@ def parse(packet: bytes) -> LiveFrame | None:
 
 def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
     """Yield the messages of a packet as bytes; raise ValueError for a truncated bundle."""
-    if not packet.startswith(_BUNDLE):
+    if not packet.startswith(_BUNDLE_MARK):
         yield packet
         return
     at = _HEADER_LENGTH

@@ -23,8 +23,8 @@ from risorius.sim.layers import LEAST_WHOLE, SIDE_ENDINGS, Layers, fraction_of_w
 from ..errors import UserError
 from ..scenes import Scene
 
-ACTION_UNITS = "Action units"  # title of a layer
-ARKIT_SHAPES = "ARKit shapes"  # title of a layer
+ACTION_UNIT_LAYER = "Action units"  # title of a layer
+ARKIT_LAYER = "ARKit shapes"  # title of a layer
 
 
 def solved(

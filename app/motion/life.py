@@ -30,7 +30,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from ..control_names.angles import DEGREES, GAZE_ANGLE
+from ..control_names.angles import FULL_ANGLES, GAZE_ANGLE
 from ..scenes import Face, Scene
 
 Values = dict[str, float]
@@ -38,12 +38,16 @@ Place = tuple[float, float]  # to the left and up [degrees]
 
 
 # Greatest idle motion of the head [degrees].
-HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
+STRAY_ANGLES = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
 NOD_ANGLE = 4.0  # [degrees] that the head turns down for a fully open jaw
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, without a common period
 
 LID_CONTROL = "orbicularis_oculi_palpebral_upper"
-BLINKS, GLANCES, PLACES, STRAYS = range(4)  # separate streams of random numbers
+# Separate streams of random numbers.
+BLINK_STREAM = 0
+GLANCE_STREAM = 1
+PLACE_STREAM = 2
+STRAY_STREAM = 3
 
 
 class Life:
@@ -59,15 +63,17 @@ class Life:
         Controls that are not named get 0.
         """
         across, along = self._glance(time)
-        strays = zip(HEAD_STRAYS.items(), self._drifts(time), strict=True)
+        strays = zip(STRAY_ANGLES.items(), self._drifts(time), strict=True)
         blink_span = 3.5  # [s] for each blink
         return {
-            "lids": _both_sides(LID_CONTROL, lid(time - self._latest(BLINKS, blink_span, time)[1])),
+            "lids": _both_sides(
+                LID_CONTROL, lid(time - self._latest(BLINK_STREAM, blink_span, time)[1])
+            ),
             "eyes": {
                 **_both_sides("gaze_horizontal", across / GAZE_ANGLE),
                 **_both_sides("gaze_vertical", along / GAZE_ANGLE),
             },
-            "head": {name: most * share / DEGREES[name] for (name, most), share in strays},
+            "head": {name: most * share / FULL_ANGLES[name] for (name, most), share in strays},
         }
 
     def _random(self, what: int, number: int) -> np.random.Generator:
@@ -87,7 +93,7 @@ class Life:
     def _glance(self, time: float) -> Place:
         """Return the direction of gaze; a saccade leads from one target to the next."""
         glance_span = 1.6  # [s] for each glance
-        number, start = self._latest(GLANCES, glance_span, time)
+        number, start = self._latest(GLANCE_STREAM, glance_span, time)
         before = self._place(number - 1)
         there = self._place(number)
         # A saccade takes 21 ms, and 2.2 ms more for each degree. The eye's own lag makes the 21 ms.
@@ -103,7 +109,7 @@ class Life:
         """Return the target of a glance, on the viewer's face or beside; the first is straight."""
         if number < 2:
             return 0.0, 0.0
-        random = self._random(PLACES, number)
+        random = self._random(PLACE_STREAM, number)
         away_fraction = 0.1  # share of glances that leave the viewer
         if random.random() >= away_fraction:
             # Standard deviation of glances over the viewer's face, across and along [degrees].
@@ -118,7 +124,9 @@ class Life:
 
     def _drifts(self, time: float) -> list[float]:
         """Return slow motions of the head, each between -1 and 1: sines with random phases."""
-        phases = self._random(STRAYS, 0).uniform(0.0, 7.0, (len(HEAD_STRAYS), len(HEAD_PERIODS)))
+        phases = self._random(STRAY_STREAM, 0).uniform(
+            0.0, 7.0, (len(STRAY_ANGLES), len(HEAD_PERIODS))
+        )
         drifts = np.sin(2.0 * math.pi * time / HEAD_PERIODS + phases).mean(axis=1)
         return [float(each) for each in drifts]
 
@@ -175,7 +183,7 @@ class Idle:
             parts[part] = {**own, **sums}
         if "head" in parts:
             nod = NOD_ANGLE * min(opening, 0.5)  # no syllable opens the mouth farther
-            parts["head"]["head_pitch"] -= nod / DEGREES["head_pitch"]
+            parts["head"]["head_pitch"] -= nod / FULL_ANGLES["head_pitch"]
         return {
             name: value
             for part in parts.values()
@@ -209,8 +217,8 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
             angle = min(max(share * angle, -EYES_MOST), EYES_MOST)
             eyes[f"gaze_{way}_{side}"] = angle / GAZE_ANGLE
     head = {
-        "head_yaw": turn / DEGREES["head_yaw"],
-        "head_pitch": rise / DEGREES["head_pitch"],
+        "head_yaw": turn / FULL_ANGLES["head_yaw"],
+        "head_pitch": rise / FULL_ANGLES["head_pitch"],
     }
     return {"eyes": eyes, "head": head}
 

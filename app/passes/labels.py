@@ -32,10 +32,10 @@ from ..files import named_in_text, written_atomically
 from ..pictures import Image
 from ..scenes import Face, Scene
 from .camera import CameraLabels
-from .landmarks import SIDES, Landmarks, jaw_on_bone, landmarks_in
+from .landmarks import EYE_SIDES, Landmarks, jaw_on_bone, landmarks_in
 from .passes import OF_FACES, PASS_NAMES, Passes
 
-DECIMAL_PLACES = 8  # decimals, with which projected points are exact to 1e-4 pixels
+LABEL_DECIMALS = 8  # decimals, with which projected points are exact to 1e-4 pixels
 
 
 def labels_of(
@@ -71,15 +71,15 @@ def labels_of(
     # Relative to a head that faces the camera: its y and z are opposite to the camera's.
     turned = np.diag([1.0, -1.0, -1.0]) @ rotation
     angles = zip(("yaw", "pitch", "roll"), angles_of(turned), strict=True)
-    directions = {side: gaze(face, side) for side in SIDES}
+    directions = {side: gaze(face, side) for side in EYE_SIDES}
     sums = face.simulation.controls.sums
     labels["activations"] = {
-        name: round(value, DECIMAL_PLACES) for name, value in sums.items() if value
+        name: round(value, LABEL_DECIMALS) for name, value in sums.items() if value
     }
     labels["head"] = {
         "R": _as_lists(rotation),
         "t": _as_lists(placed.to_camera(cranium[None, :3, 3])[0]),
-        **{name: round(angle, DECIMAL_PLACES) for name, angle in angles},
+        **{name: round(angle, LABEL_DECIMALS) for name, angle in angles},
     }
     labels["gaze"] = {
         side: {
@@ -107,7 +107,7 @@ def _plain_landmarks(found: Landmarks) -> dict[str, Any]:
 
 def _as_lists(numbers: Floats64) -> Any:
     """Convert an array to lists of rounded numbers without negative zeros."""
-    return (np.round(numbers, DECIMAL_PLACES) + 0.0).tolist()
+    return (np.round(numbers, LABEL_DECIMALS) + 0.0).tolist()
 
 
 def gaze(face: Face, side: str) -> Floats64:
@@ -117,7 +117,7 @@ def gaze(face: Face, side: str) -> Floats64:
     return direction
 
 
-CHANNELS = {
+PASS_CHANNELS = {
     "depth": ("depth.Z",),
     "normal": ("normal.X", "normal.Y", "normal.Z"),
     "triangle": ("triangle.ID",),
@@ -145,7 +145,7 @@ class Labelled:
     def save(self, picture: Path) -> None:
         """Write the files that belong beside `picture`; raises OSError if one cannot be written."""
         exr, classes, landmarks, labels = files_beside(picture)
-        floats = {name: image for name, image in self.images.items() if name in CHANNELS}
+        floats = {name: image for name, image in self.images.items() if name in PASS_CHANNELS}
         if floats:
             write_exr(exr, floats)
         if "segmentation" in self.images:
@@ -177,7 +177,7 @@ def check_wanted(wanted: Sequence[str], scene: str) -> None:
                 f"--passes {name}: the scene {scene} has no face; allowed are "
                 f"{', '.join(each for each in PASS_NAMES if each not in OF_FACES)}"
             )
-    if any(name in CHANNELS for name in wanted):
+    if any(name in PASS_CHANNELS for name in wanted):
         openexr()
 
 
@@ -202,13 +202,13 @@ def openexr() -> Any:
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
-    """Write passes, by names in CHANNELS, into an OpenEXR file; raise OSError if that fails."""
+    """Write passes, by names in PASS_CHANNELS, into an OpenEXR file; OSError if that fails."""
     module = openexr()
     channels = {}
     for name, images in passes.items():
         kind = np.float32 if images.dtype.kind == "f" else np.uint32
         layers = images.reshape(*images.shape[:2], -1).astype(kind)
-        for k, channel in enumerate(CHANNELS[name]):
+        for k, channel in enumerate(PASS_CHANNELS[name]):
             channels[channel] = np.ascontiguousarray(layers[..., k])
     header = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
     try:

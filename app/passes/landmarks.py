@@ -18,7 +18,7 @@ from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from ..scenes import Face
 from .camera import CameraLabels
 
-SIDES = ("right", "left")  # the subject's, in the order of landmarks
+EYE_SIDES = ("right", "left")  # the subject's, in the order of landmarks
 JAW_COUNT = 17  # the first landmarks
 MOST_BEHIND = 2.0  # [mm] of depth between the refined skin and a visible landmark
 
@@ -51,7 +51,7 @@ def landmarks_in(
     pixels = camera.project(points)
     pupil_tolerance = 0.6  # [mm]; a shut lid lies one millimetre in front of the pupil
     tolerance = np.full(len(points) - JAW_COUNT, MOST_BEHIND)
-    tolerance[-len(SIDES) :] = pupil_tolerance
+    tolerance[-len(EYE_SIDES) :] = pupil_tolerance
     visible = np.concatenate(
         [
             _is_uncovered(jaw, camera, depth),
@@ -142,7 +142,7 @@ def _pupils(face: Face) -> Floats64:
     """Return the positions of the pupils [mm], shape (2, 3)."""
     bones = face.bone_transforms()
     pupils = []
-    for side in SIDES:
+    for side in EYE_SIDES:
         bone = f"eye_{side}"
         ball = next(part for part in face.head.parts if part.bone == bone)
         front = ball.vertices[ball.vertices[:, 2].argmax()]

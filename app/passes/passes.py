@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from risorius import render
 from risorius.assets import Segment
-from risorius.assets.identities import GLASSES, HAIR, MASK
+from risorius.assets.identities import GLASSES_NAME, HAIR_NAME, MASK_NAME
 
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
@@ -97,11 +97,11 @@ class Passes:
 
 def _classes(part: Any) -> Bytes:
     """Return the class of each triangle of a part."""
-    if part.name.startswith(HAIR):
+    if part.name.startswith(HAIR_NAME):
         return np.full(len(part.faces), Segment.HAIR, np.uint8)
-    if part.name == GLASSES:
+    if part.name == GLASSES_NAME:
         return np.full(len(part.faces), Segment.GLASSES, np.uint8)
-    if part.name == MASK:
+    if part.name == MASK_NAME:
         return np.full(len(part.faces), Segment.FACE_WEAR, np.uint8)
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
     if part.bone == "neck":

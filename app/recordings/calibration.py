@@ -24,7 +24,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..control_names import SIGNED_CONTROLS, twin_of
 from ..errors import UserError
-from .names import ANGLES, ARKIT, HEAD_ANGLES, VISEMES, angle_of, shape_of
+from .names import ANGLE_NAMES, ARKIT_SHAPES, HEAD_ANGLES, VISEME_NAMES, angle_of, shape_of
 from .take import Take
 
 Value = TypeVar("Value", float, Floats64)
@@ -63,7 +63,7 @@ class Calibration:
     def _value(self, name: str, value: Value) -> Value:
         """Subtract a channel's neutral value, and multiply by its gain."""
         neutral = self.neutral.get(name, 0.0)
-        if name in ANGLES:
+        if name in ANGLE_NAMES:
             return (value - neutral) * self.gains.get(name, 1.0)
         # Least range of a channel above the neutral value; less would amplify noise to motion.
         least_range = 0.2
@@ -97,7 +97,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     """
     if method == "none":
         return {}
-    names = [name for name in take.channels if name not in VISEMES]
+    names = [name for name in take.channels if name not in VISEME_NAMES]
     if method is not None and method.startswith("first"):
         return _median_of_first(take, names, _seconds_in(method))
     if method not in (None, "percentile"):
@@ -112,14 +112,14 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     # Channels that are 0 in a face at rest, or are a share of another channel.
     never_neutral = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
     for name in names:
-        if name not in ANGLES and not any(_fitting([name], each) for each in never_neutral):
+        if name not in ANGLE_NAMES and not any(_fitting([name], each) for each in never_neutral):
             neutral[name] = float(np.percentile(take.channels[name], low_percentile))
     return neutral
 
 
 def neutral_now(channels: Mapping[str, float]) -> dict[str, float]:
     """Return the neutral face of a person who is neutral in this frame."""
-    return {name: value for name, value in channels.items() if name not in VISEMES}
+    return {name: value for name, value in channels.items() if name not in VISEME_NAMES}
 
 
 def _median_of_first(take: Take, names: Iterable[str], seconds: float) -> dict[str, float]:
@@ -161,7 +161,7 @@ def gains_of(
             continue
         name = shape_of(name) or angle_of(name) or name  # NAME may be spelled as in a file: JawOpen
         fitting = _fitting(names, name)
-        if not fitting and not _fitting(ARKIT, name):
+        if not fitting and not _fitting(ARKIT_SHAPES, name):
             raise UserError(
                 f"--gain {setting}: no channel of this recording is called '{name}'; "
                 "write a channel's name, a pattern such as mouth*, or all"

@@ -17,7 +17,7 @@ from risorius.geometry.arrays import Floats64
 from ..control_names.limits import Limits
 from ..playback import LEAD_TIME, Playback
 from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
-from ..script.thinning import TOLERANCE, thinned
+from ..script.thinning import LINE_TOLERANCE, thinned
 from ..text import in_one_line
 from .calibration import calibration_for
 from .mapping import controls_of
@@ -46,7 +46,9 @@ def _script(take: Take, curves: Mapping[str, Floats64], lead: float) -> Script:
     """Return a script with a track for each moving control, or with a pose for a single frame."""
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
-    moved = {name: values for name, values in curves.items() if np.abs(values).max() > TOLERANCE}
+    moved = {
+        name: values for name, values in curves.items() if np.abs(values).max() > LINE_TOLERANCE
+    }
     # The camera stands where the camera of the recording stood.
     script = Script(
         title,

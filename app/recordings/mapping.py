@@ -14,8 +14,8 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-from ..control_names.angles import DEGREES
-from .names import ARKIT
+from ..control_names.angles import FULL_ANGLES
+from .names import ARKIT_SHAPES
 
 Value = TypeVar("Value", float, Floats64)
 
@@ -29,7 +29,7 @@ _SHAPE_OF_UNIT = {  # action unit -> beginning of the names of shapes that also 
     "AU27": "jawOpen", "AU28": "mouthRoll", "AU34": "cheekPuff", "AU43": "eyeBlink",
     "AU45": "eyeBlink", "AU46": "eyeBlink",
 }  # fmt: skip
-_SHAPES = frozenset(ARKIT)
+ARKIT_SET = frozenset(ARKIT_SHAPES)
 _LOOKS_OF_ANGLE = {
     f"eye_{angle}_{side.lower()}": frozenset(f"eyeLook{way}{side}" for way in ways)
     for angle, ways in (("yaw", ("In", "Out")), ("pitch", ("Up", "Down")))
@@ -51,7 +51,7 @@ def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     }
     for channel in chosen(channels):
         control = of_eyes.get(channel, channel)
-        controls[control] = channels[channel] / DEGREES.get(control, 1.0)
+        controls[control] = channels[channel] / FULL_ANGLES.get(control, 1.0)
     return controls
 
 
@@ -66,7 +66,7 @@ def chosen(channels: Mapping[str, Any]) -> tuple[str, ...]:
     for angle, looks in _LOOKS_OF_ANGLE.items():
         if angle in channels and not looks.isdisjoint(channels):
             left_out |= looks if np.any(channels[angle]) else {angle}
-    shapes = tuple(name for name in channels if name in _SHAPES)
+    shapes = tuple(name for name in channels if name in ARKIT_SET)
     for name in channels:
         unit = _ACTION_UNIT.fullmatch(name) if shapes else None
         twin = _SHAPE_OF_UNIT.get(unit[1]) if unit else None

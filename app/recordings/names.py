@@ -25,7 +25,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-ARKIT = (
+ARKIT_SHAPES = (
     "eyeBlinkLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft",
     "eyeSquintLeft", "eyeWideLeft", "eyeBlinkRight", "eyeLookDownRight", "eyeLookInRight",
     "eyeLookOutRight", "eyeLookUpRight", "eyeSquintRight", "eyeWideRight", "jawForward", "jawLeft",
@@ -44,8 +44,8 @@ LARGEST_VALUE = 3.0  # a larger value is an error
 LARGEST_ANGLE = 360.0  # [degrees]; a larger one is an error
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
-ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
-VISEMES = tuple(
+ANGLE_NAMES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
+VISEME_NAMES = tuple(
     f"viseme_{sound}" for sound in "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 )
 
@@ -54,12 +54,12 @@ ACTION_UNIT = re.compile(
     r"(?:[ _.-]?(int(?:ensity)?|detection|detected|presence|present|binary|occurrence))?$"
 )
 OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # Oculus' visemes -> ours
-_SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
+VISEME_BY_SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEME_NAMES}
 
 
 def measured(name: str, values: Floats64) -> Floats64:
     """Return the values of a channel, with NaN for values too large for a measurement."""
-    largest = LARGEST_ANGLE if name in ANGLES else LARGEST_VALUE
+    largest = LARGEST_ANGLE if name in ANGLE_NAMES else LARGEST_VALUE
     return np.where(np.abs(values) > largest, np.nan, values)
 
 
@@ -71,7 +71,7 @@ def letters_of(name: str) -> str:
 def _spellings() -> dict[str, str]:
     """Return spelling without separators -> shape; a side may be shortened to L or R."""
     found = {}
-    for name in ARKIT:
+    for name in ARKIT_SHAPES:
         found[letters_of(name)] = name
         for side in ("Left", "Right"):
             if name.endswith(side):
@@ -89,8 +89,8 @@ def _angle_spellings() -> dict[str, str]:
     return found
 
 
-_SHAPES = _spellings()
-_ANGLES = _angle_spellings()
+SHAPE_BY_SPELLING = _spellings()
+ANGLE_BY_SPELLING = _angle_spellings()
 
 
 @dataclass(frozen=True)
@@ -131,15 +131,15 @@ def unit_of(column: str) -> Unit | None:
 def shape_of(column: str) -> str | None:
     """Return the ARKit shape that a column holds, by its name; None for other columns."""
     last_word = re.split(r"[.:/|]", column)[-1]
-    return _SHAPES.get(letters_of(column)) or _SHAPES.get(letters_of(last_word))
+    return SHAPE_BY_SPELLING.get(letters_of(column)) or SHAPE_BY_SPELLING.get(letters_of(last_word))
 
 
 def angle_of(column: str) -> str | None:
     """Return the angle of head or eye that a column holds, by its name, or None."""
-    return _ANGLES.get(letters_of(column))
+    return ANGLE_BY_SPELLING.get(letters_of(column))
 
 
 def viseme_of(column: str) -> str | None:
     """Return the viseme of a column or track: `viseme_PP`, `PP`, or Oculus' `I`, `O`, `U`."""
     sound = column.strip().casefold().removeprefix("viseme_").removeprefix("v_")
-    return _SOUND.get(OCULUS_VOWELS.get(sound, sound).casefold())
+    return VISEME_BY_SOUND.get(OCULUS_VOWELS.get(sound, sound).casefold())

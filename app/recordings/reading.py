@@ -1,7 +1,7 @@
 """Reading of a file into a Take; its content determines the format, never its name.
 
-`TABLES` and `DOCUMENTS` list the formats, the most special first. A new format needs a row here,
-with a function that recognises it and a function that reads it.
+`TABLE_KINDS` and `DOCUMENT_KINDS` list the formats, the most special first. A new format needs a
+row here, with a function that recognises it and a function that reads it.
 """
 
 from __future__ import annotations
@@ -21,15 +21,18 @@ from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
 from .take import Take, TakeRequest
 
+ReadsTable = Callable[[Table, TakeRequest], Take]
+ReadsDocument = Callable[[Any, str, TakeRequest], Take]
+
 # For each kind of table: a test of the columns' names, and a reader.
-TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, TakeRequest], Take]]] = (
+TABLE_KINDS: Sequence[tuple[Callable[[tuple[str, ...]], bool], ReadsTable]] = (
     (named_columns.is_live_link, named_columns.read),
     (pyfeat.recognises, pyfeat.read),
     (openface.recognises, openface.read),
     (named_columns.recognises, named_columns.read),
 )
 # For each kind of JSON: a test of the document, and a reader.
-DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, TakeRequest], Take]]] = (
+DOCUMENT_KINDS: Sequence[tuple[Callable[[Any], bool], ReadsDocument]] = (
     (speech.recognises_tracks, speech.read_tracks),
     (speech.recognises_cues, speech.read_cues),
     (mediapipe_json.recognises_weights, mediapipe_json.read_weights),
@@ -39,7 +42,7 @@ LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about
 BEGINNING_SIZE = 2**16  # [bytes] read to recognise a recording; a header of 2183 names fits
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
 JSON_START = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no TOML script begins like this
-SPEAKS_OF_FACES = re.compile(
+FACE_KEY = re.compile(
     r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
     r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?|(viseme_)?(pp|sil))"',
     re.IGNORECASE,
@@ -74,12 +77,12 @@ def _read_text(text: str, path: Path, request: TakeRequest) -> Take:
             document = parsed_json(text)
         except ValueError as error:
             raise UserError(f"{path}: is {error}") from None
-        for recognises, read in DOCUMENTS:
+        for recognises, read in DOCUMENT_KINDS:
             if recognises(document):
                 return read(document, str(path), request)
         raise UserError(f"{path}: is JSON without shapes of a face; known are {known_kinds}")
     names = header_of(text)
-    for is_known, read_table in TABLES:
+    for is_known, read_table in TABLE_KINDS:
         if is_known(names):
             return read_table(table_in(text, source=str(path)), request)
     raise UserError(f"{path}: {_unknown_kind(names)}; known are {known_kinds}")
@@ -92,9 +95,9 @@ def is_recording(path: Path) -> bool:
     """
     text = read_beginning(path)
     if JSON_START.match(text):
-        return bool(SPEAKS_OF_FACES.search(text))
+        return bool(FACE_KEY.search(text))
     names = header_of(text)
-    return any(recognises(names) for recognises, _ in TABLES)
+    return any(recognises(names) for recognises, _ in TABLE_KINDS)
 
 
 def _unknown_kind(names: tuple[str, ...]) -> str:

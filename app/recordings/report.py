@@ -15,7 +15,7 @@ import numpy as np
 from ..text import counted, in_one_line
 from .calibration import Calibration
 from .mapping import chosen
-from .names import ANGLES, ARKIT
+from .names import ANGLE_NAMES, ARKIT_SHAPES
 from .take import Take
 
 
@@ -64,12 +64,12 @@ def report_of(take: Take, calibration: Calibration) -> Report:
     """Return the report on a take."""
     channels = take.channels
     still = _constant_channels(take)
-    shapes = [name for name in ARKIT if name in channels]
+    shapes = [name for name in ARKIT_SHAPES if name in channels]
     rows = [
         ("used", _used(set(chosen(channels)) - still)),
         ("neutral", _neutral(calibration)),
         ("constant", _listed(still)),
-        ("missing", _listed(name for name in ARKIT if shapes and name not in channels)),
+        ("missing", _listed(name for name in ARKIT_SHAPES if shapes and name not in channels)),
         ("unknown", _listed(take.unknown)),
         *(("note", note) for note in take.notes),
     ]
@@ -97,7 +97,7 @@ def _constant_channels(take: Take) -> set[str]:
 
 def _used(names: set[str]) -> str:
     kinds = {
-        "of ARKit's shapes": {name for name in names if name in ARKIT},
+        "of ARKit's shapes": {name for name in names if name in ARKIT_SHAPES},
         "of the action units": {name for name in names if name.startswith("AU")},
         "of the visemes": {name for name in names if name.startswith("viseme")},
         "of the head's angles": {name for name in names if name.startswith("head_")},
@@ -113,7 +113,7 @@ def _neutral(calibration: Calibration) -> str:
     neutral = {
         name: abs(value)
         for name, value in calibration.neutral.items()
-        if name not in ANGLES and abs(value) > slight_value
+        if name not in ANGLE_NAMES and abs(value) > slight_value
     }
     if not neutral:
         return ""

@@ -26,8 +26,8 @@ from .gaps import take_from_rows
 from .names import viseme_of
 from .take import Take, TakeRequest
 
-SILENCE = "viseme_sil"
-MOUTHS = {  # mouth shape of Rhubarb -> viseme and value
+SILENT_VISEME = "viseme_sil"
+VISEME_OF_MOUTH = {  # mouth shape of Rhubarb -> viseme and value
     "A": ("viseme_PP", 1.0),  # shut: p, b, m
     "B": ("viseme_SS", 0.7),  # teeth together: k, s, t, ee
     "C": ("viseme_E", 0.8),  # open: e, a
@@ -36,7 +36,7 @@ MOUTHS = {  # mouth shape of Rhubarb -> viseme and value
     "F": ("viseme_ou", 0.9),  # puckered: u, w
     "G": ("viseme_FF", 0.9),  # lower lip at the teeth: f, v
     "H": ("viseme_nn", 0.9),  # tongue up: l
-    "X": (SILENCE, 1.0),
+    "X": (SILENT_VISEME, 1.0),
 }
 
 
@@ -66,7 +66,7 @@ class _Cue(Record):
 
     others: Rest[Any]
     start: Time
-    value: Annotated[str, OneOf(tuple(MOUTHS))]
+    value: Annotated[str, OneOf(tuple(VISEME_OF_MOUTH))]
     end: Time = 0.0
 
 
@@ -119,10 +119,10 @@ def _raise_low_weights(channels: dict[str, Floats64], notes: list[str]) -> dict[
     for name, wanted in least_peaks.items():
         if name in found and (height := _height(found[name])):
             found[name] = np.minimum(found[name] * (wanted / height), wanted)
-    if SILENCE in found and (height := _height(found[SILENCE])):
-        silence = np.minimum(found[SILENCE] / height, 1.0)
-        rest = (1.0 - silence) / np.maximum(1.0 - found[SILENCE], 1e-6)
-        found = {name: values * rest for name, values in found.items()} | {SILENCE: silence}
+    if SILENT_VISEME in found and (height := _height(found[SILENT_VISEME])):
+        silence = np.minimum(found[SILENT_VISEME] / height, 1.0)
+        rest = (1.0 - silence) / np.maximum(1.0 - found[SILENT_VISEME], 1e-6)
+        found = {name: values * rest for name, values in found.items()} | {SILENT_VISEME: silence}
     notes.append("Weights are low: those of PP, FF and silence were raised, so that lips meet.")
     return found
 
@@ -163,9 +163,9 @@ def read_cues(document: Any, source: str, request: TakeRequest) -> Take:
         points[start + turn] = following
     points[max(float(ends[-1]), max(points))] = cues[-1][1]
     times = np.array(sorted(points))
-    channels = {name: np.zeros(len(times)) for name, _ in MOUTHS.values()}
+    channels = {name: np.zeros(len(times)) for name, _ in VISEME_OF_MOUTH.values()}
     for row, time in enumerate(times):
-        name, value = MOUTHS[points[float(time)]]
+        name, value = VISEME_OF_MOUTH[points[float(time)]]
         channels[name][row] = value
     used = {name: values for name, values in channels.items() if values.any()}
     notes = [f"Mouth shapes became visemes, {transition:g} s from one to the next."]

@@ -43,7 +43,7 @@ MEASURED_FORM = re.compile(
     re.IGNORECASE,
 )
 SHORTEST_STEP = 0.004  # [s] between frames; shorter steps are not seconds
-UNITS = (  # shortest step, longest step, unit [s] of time stamps, and its name
+TIME_UNITS = (  # shortest step, longest step, unit [s] of time stamps, and its name
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
     (4.0, 2.5e3, 1e-3, "milliseconds"),
     (4e3, 2.5e6, 1e-6, "microseconds"),
@@ -247,12 +247,12 @@ def stamp_times(
     steps = np.diff(stamps)
     step = float(np.nanmedian(steps[steps > 0.0]))
     if unit_of_name is not None and 5e-4 <= step * unit_of_name <= 10.0:
-        name = next(name for *_, unit, name in UNITS if unit == unit_of_name)
+        name = next(name for *_, unit, name in TIME_UNITS if unit == unit_of_name)
         return _in_seconds(stamps, unit_of_name, name, notes)
     if step in (1.0, 2.0) and np.all(stamps % 1.0 == 0.0):
         notes.append("The time stamps count frames.")
         return None
-    for shortest, longest, unit, name in UNITS:
+    for shortest, longest, unit, name in TIME_UNITS:
         if shortest <= step < longest:
             return _in_seconds(stamps, unit, name, notes)
     notes.append(

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..text import counted
-from .names import ARKIT, LARGEST_VALUE, letters_of, measured
+from .names import ARKIT_SHAPES, LARGEST_VALUE, letters_of, measured
 
 Rows = npt.NDArray[np.bool_]
 
@@ -132,7 +132,7 @@ def is_calibrated(shapes: Mapping[str, Floats64], notes: list[str]) -> bool:
     resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
     at_zero = [values[np.isfinite(values)] <= ZERO_TOLERANCE for values in resting]
     calibrated = sum(bool(rows.size and np.mean(rows) > 0.2) for rows in at_zero) >= 3
-    if calibrated and len(shapes) == len(ARKIT):
+    if calibrated and len(shapes) == len(ARKIT_SHAPES):
         notes.append("The take is calibrated: its neutral face is at 0.")
     return calibrated
 

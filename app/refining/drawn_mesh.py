@@ -18,11 +18,11 @@ from risorius.geometry.arrays import Floats64, Unsigned8
 
 from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
-from .presets import ON_CARD, Refinement
+from .presets import CARD_REFINER, Refinement
 from .refiners import refiner_for
-from .wrinkling import GRADIENTS, WRINKLES, Wrinkling
+from .wrinkling import GRADIENT_ATTRIBUTE, WRINKLE_ATTRIBUTE, Wrinkling
 
-FADE = "fade"  # an attribute of refined meshes
+FADE_ATTRIBUTE = "fade"  # an attribute of refined meshes
 LARGE_MESH = 20_000  # triangles; by default the graphics card refines meshes of this size
 
 
@@ -55,7 +55,10 @@ class DrawnMesh:
         more = {}
         self.wrinkles = False
         if self.can_wrinkle and wrinkling is not None:
-            more["values"] = {WRINKLES: wrinkling.amounts, GRADIENTS: wrinkling.gradients}
+            more["values"] = {
+                WRINKLE_ATTRIBUTE: wrinkling.amounts,
+                GRADIENT_ATTRIBUTE: wrinkling.gradients,
+            }
             self.wrinkles = bool(wrinkling.amounts.any())
         refiner: Any = self.refiner  # a refiner without attributes may lack `values`
         with reported(self.plug_ins):
@@ -126,7 +129,7 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
     is_open = refinement.refiner is None and not refinement.options
     suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
-    asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
+    asked = replace(refinement, refiner=CARD_REFINER) if suits_card else refinement
     refiner = refiner_for(scene, asked, attributes=_attributes_of(scene))
     plug_ins = plug_ins_of(*asked.for_scene(scene.name))
     with reported(plug_ins):
@@ -149,10 +152,10 @@ def _attributes_of(scene: Drawable) -> dict[str, Any]:
     amounts = np.zeros((len(scene.rest_positions), 2), np.float32)
     gradients = np.zeros((len(skin.uv), 6), np.float32)
     attributes: dict[str, Any] = {
-        WRINKLES: amounts,
-        GRADIENTS: gradients if skin.face_uv is None else (gradients, skin.face_uv),
+        WRINKLE_ATTRIBUTE: amounts,
+        GRADIENT_ATTRIBUTE: gradients if skin.face_uv is None else (gradients, skin.face_uv),
     }
-    return attributes if skin.fade is None else attributes | {FADE: skin.fade}
+    return attributes if skin.fade is None else attributes | {FADE_ATTRIBUTE: skin.fade}
 
 
 def _stream_for(

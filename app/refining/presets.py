@@ -13,13 +13,13 @@ from typing import Any
 
 from ..errors import UserError
 
-STATIC = "none"  # the refiner that does not change the mesh
+STATIC_REFINER = "none"  # the refiner that does not change the mesh
 STATIC_LABEL = "static"  # its name in pictures
-CHANGED = ", changed"  # suffix of the name of a preset or refiner with options of a user
+CHANGED_SUFFIX = ", changed"  # suffix of the name of a preset or refiner with options of a user
 FIRST_PRESET = "smooth"  # the default
 PAPERS_PRESET = "paper"
 PAPERS_CRITERION = "normal"
-THRESHOLDS = ("threshold_once", "threshold_twice")  # options of PAPERS_CRITERION only
+THRESHOLD_OPTIONS = ("threshold_once", "threshold_twice")  # options of PAPERS_CRITERION only
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class Preset:
         return self.options.get(refiner, {})
 
 
-ON_CARD = "kahler-gl"  # `kahler` on the graphics card, with fewer options
+CARD_REFINER = "kahler-gl"  # `kahler` on the graphics card, with fewer options
 
 
 def _for_both(options: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Return the same options for `kahler` and for `kahler-gl`."""
-    return {"kahler": options, ON_CARD: options}
+    return {"kahler": options, CARD_REFINER: options}
 
 
 # A flat mesh needs no tolerance, because it is not bent at rest. A search found these values, with
@@ -92,12 +92,12 @@ class Refinement:
         return name, {**preset.options_for(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
-        """Whether one of the criteria is PAPERS_CRITERION, which uses THRESHOLDS."""
+        """Whether one of the criteria is PAPERS_CRITERION, which uses THRESHOLD_OPTIONS."""
         return PAPERS_CRITERION in self.criterion_on(scene).split("+")
 
     def check(self, scene: str) -> None:
         """Raise UserError for options that have no effect on a scene, given the scene's name."""
-        unused = [name for name in THRESHOLDS if name in self.options]
+        unused = [name for name in THRESHOLD_OPTIONS if name in self.options]
         if unused and not self.has_thresholds(scene):
             raise UserError(
                 f"--option {unused[0]}: is an option of the criterion {PAPERS_CRITERION}, but "
@@ -112,8 +112,8 @@ class Refinement:
     @property
     def label(self) -> str:
         """The name of the refinement under a picture."""
-        name = STATIC_LABEL if self.refiner == STATIC else self.refiner or self.preset
-        return f"{name}{CHANGED}" if self.options else name
+        name = STATIC_LABEL if self.refiner == STATIC_REFINER else self.refiner or self.preset
+        return f"{name}{CHANGED_SUFFIX}" if self.options else name
 
 
 def named(name: str, preset: str) -> Refinement:

@@ -17,15 +17,15 @@ from risorius.geometry.arrays import Floats64, Integers32
 from ..errors import UserError
 from ..scenes import Drawable
 from .plug_ins import culprit_of, error_in, plug_ins_of
-from .presets import PAPERS_CRITERION, PRESETS, STATIC, THRESHOLDS, Refinement, named
+from .presets import PAPERS_CRITERION, PRESETS, STATIC_REFINER, THRESHOLD_OPTIONS, Refinement, named
 
 Splits = npt.NDArray[np.uint8]
 
-CUBIC = "cubic"
-DETAIL = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
+CUBIC_SCHEME = "cubic"
+DETAIL_SCHEME = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
 OPTION_MARK = "."  # mark between a criterion and its option
-SWITCHES = {"on": True, "true": True, "off": False, "false": False}
+SWITCH_WORDS = {"on": True, "true": True, "off": False, "false": False}
 
 
 def refiner_for(
@@ -47,13 +47,13 @@ def refiner_for(
         if refinement.options:
             _check(name, refinement.options, refinement.criterion_on(scene.name))
             options = with_criteria(options)
-        if options.get("scheme") == DETAIL and _takes_own_schemes(name):
+        if options.get("scheme") == DETAIL_SCHEME and _takes_own_schemes(name):
             finer = finer_mesh(scene)
             if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
             options["scheme"] = refine.DetailScheme(finer)
         # A refiner by name has no outlines, because the graphics card cannot draw them.
-        if refinement.refiner is None and options.get("scheme") == CUBIC:
+        if refinement.refiner is None and options.get("scheme") == CUBIC_SCHEME:
             options["scheme"] = refine.CubicScheme(_outlines(scene))
         if splits is not None:
             options.pop("criterion", None)
@@ -128,7 +128,7 @@ def with_criteria(options: Mapping[str, Any]) -> dict[str, Any]:
             if option.name in own:
                 replace(option, name=f"{start}{option.name}").check(own[option.name])
         if own and part == PAPERS_CRITERION:  # its thresholds are options of the refiner
-            own |= {name: plain[name] for name in THRESHOLDS if name in plain}
+            own |= {name: plain[name] for name in THRESHOLD_OPTIONS if name in plain}
         made.append(refine.criteria.make(part, **own) if own else part)
     return {**plain, "criterion": made}
 
@@ -195,7 +195,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
     if refiner is not None and refiner not in refine.refiners.available():
         there_are = ", ".join(refine.refiners.available())
         raise UserError(f"refiner '{refiner}' is unknown; there are {there_are}")
-    if refiner == STATIC and settings:
+    if refiner == STATIC_REFINER and settings:
         raise UserError(
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
         )
@@ -237,8 +237,8 @@ def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinem
 
 
 def _value(text: str) -> bool | int | float | str:
-    if text.lower() in SWITCHES:
-        return SWITCHES[text.lower()]
+    if text.lower() in SWITCH_WORDS:
+        return SWITCH_WORDS[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)

@@ -19,8 +19,8 @@ from risorius.geometry.gradients import TextureGradients
 
 from ..scenes import Drawable
 
-WRINKLES = "wrinkles"  # attributes of refined meshes
-GRADIENTS = "texture_gradients"
+WRINKLE_ATTRIBUTE = "wrinkles"  # attributes of refined meshes
+GRADIENT_ATTRIBUTE = "texture_gradients"
 Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 

@@ -27,14 +27,14 @@ from .pieces import FilePiece, corrected, described, find_pieces, without_helper
 from .poses import shape_names
 from .take_linearity import difference_on, played_take, worth_correcting_on
 
-GLTF = (".glb", ".gltf")
+GLTF_SUFFIXES = (".glb", ".gltf")
 
 
 @dataclass(frozen=True)
 class RigRequest:
     """Options of an avatar.
 
-    kinds: kinds of shapes, see `poses.KINDS`.
+    kinds: kinds of shapes, see `poses.SHAPE_KINDS`.
     eyes: "nodes" or "targets" turn the eyeballs; None: the default of the file's format.
     corrections: corrected roles of pieces, see `pieces.corrected`.
     adds_parts: whether missing eyes, teeth and tongue are added.
@@ -170,7 +170,7 @@ def file_head(head: FittedHead, request: RigRequest, report: Report) -> FileHead
     Raises AssetError for unusable files, and UserError for wrong options.
     """
     path = head.files[0]
-    is_gltf = path.suffix.lower() in GLTF
+    is_gltf = path.suffix.lower() in GLTF_SUFFIXES
     painted = None if is_gltf else read_painted(path)
     mesh = read_mesh(path) if painted is None else painted.mesh
     stored = tuple(stored_pieces(path.read_bytes(), path.parent)) if is_gltf else ()

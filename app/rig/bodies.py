@@ -15,10 +15,10 @@ from risorius.geometry.normals import vertex_normals
 from ..motion import tally
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
-from .poses import CRANIUM, Pose, moved_part, rest_in, settings_of
+from .poses import CRANIUM_BONE, Pose, moved_part, rest_in, settings_of
 
-EYES = ("eye_left", "eye_right")  # names of bones
-LEAST_MOTION = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
+EYE_BONES = ("eye_left", "eye_right")  # names of bones
+LEAST_SHAPE_MOTION = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
 
 
 class Body(Protocol):
@@ -80,7 +80,7 @@ class PartBody:
         return np.asarray(self.part.faces, np.int32)
 
     def at(self, pose: Pose) -> Floats64:
-        if self.bone != CRANIUM:
+        if self.bone != CRANIUM_BONE:
             return pose.parts[self.name].astype(np.float64)
         return moved_part(self.part, pose)
 
@@ -99,8 +99,8 @@ def bodies_of_parts(
     found = []
     for part in scene.parts:
         if wanted(part):
-            is_node = part.bone == "neck" or (part.bone in EYES and eyes_are_nodes)
-            bone = part.bone if is_node else CRANIUM
+            is_node = part.bone == "neck" or (part.bone in EYE_BONES and eyes_are_nodes)
+            bone = part.bone if is_node else CRANIUM_BONE
             found.append(PartBody(part, np.array(part.vertices, np.float64), bone))
     return found
 
@@ -134,7 +134,7 @@ def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
         moved = body.at(pose)
         before = body.at(base)
         change = moved - before
-        change[np.linalg.norm(change, axis=1) < LEAST_MOTION] = 0.0
+        change[np.linalg.norm(change, axis=1) < LEAST_SHAPE_MOTION] = 0.0
         if not change.any():
             continue
         targets[number] = change

@@ -13,10 +13,10 @@ import scipy
 
 from risorius.geometry.arrays import Floats32, Floats64
 
-from ..motion.curves import ARKIT_SHAPES, solved
+from ..motion.curves import ARKIT_LAYER, solved
 from ..playback import LEAD_TIME
 from ..recordings.conversion import lead_of
-from ..recordings.names import ARKIT
+from ..recordings.names import ARKIT_SHAPES
 from ..scenes import Scene
 
 
@@ -44,9 +44,9 @@ def shape_curves(
     controls: control -> set values in each frame, (N,).
     Raises UserError for a scene without muscles.
     """
-    curves = as_seen(times, solved(scene, ARKIT_SHAPES, activations, controls))
+    curves = as_seen(times, solved(scene, ARKIT_LAYER, activations, controls))
     still = np.zeros(len(times))
-    return np.stack([curves.get(name, still) for name in ARKIT], axis=1)
+    return np.stack([curves.get(name, still) for name in ARKIT_SHAPES], axis=1)
 
 
 def nearest_weights(targets: Floats32, displacements: Floats64, curves: Floats64) -> Floats64:

@@ -26,13 +26,13 @@ from risorius.geometry.transforms import moved_points
 
 from ..scenes.bent_part import FaceNow
 from ..scenes.skin_part import SkinPart
-from .bodies import EYES
+from .bodies import EYE_BONES
 from .pieces import FilePiece
-from .poses import CRANIUM, Pose
+from .poses import CRANIUM_BONE, Pose
 
 LIP_HEIGHT = 10.0  # [mm]; height over which motion changes from one jaw to the other
 ROOT_TOLERANCE = 1.5  # [mm]; how much farther from the skin than the nearest root lashes may begin
-TONGUE = "tongue"  # name of a part
+TONGUE_NAME = "tongue"  # name of a part
 TONGUE_COLOUR = (0.75, 0.42, 0.4)  # sRGB, for a tongue without a colour in the file
 
 
@@ -94,7 +94,7 @@ class FileBody:
         moved[self._skin] = pose.skin[self._place[self._skin]]
         mandible = pose.matrices["mandible"]
         for role, indices in self._pieces.items():
-            if role in EYES and not self._eyes_are_nodes:
+            if role in EYE_BONES and not self._eyes_are_nodes:
                 pivot = self.pivots[role]
                 turned = (self.rest[indices] - pivot) @ pose.matrices[role][:3, :3].T
                 moved[indices] = pivot + turned
@@ -102,8 +102,8 @@ class FileBody:
                 moved[indices] = moved_points(mandible, self.rest[indices])
             elif role == "mouth":
                 moved[indices] = self._between_jaws(indices, mandible)
-            elif role == TONGUE:
-                moved[indices] = moved_points(mandible, pose.parts[TONGUE].astype(np.float64))
+            elif role == TONGUE_NAME:
+                moved[indices] = moved_points(mandible, pose.parts[TONGUE_NAME].astype(np.float64))
         if self._lashes is not None:
             self._lashes.follow(FaceNow(pose.skin, pose.matrices))
             moved[self._pieces["on_skin"]] = self._lashes.vertices
@@ -147,7 +147,7 @@ class FileBody:
         local_index = np.full(len(self.rest), -1, np.int32)
         local_index[indices] = np.arange(len(indices))
         faces = local_index[self.faces]
-        part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM, roots)
+        part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM_BONE, roots)
         return SkinPart(part, head.vertices, head.faces)
 
 
@@ -221,8 +221,8 @@ def with_own_tongue(
     local_index = np.full(len(rest), -1, np.int32)
     local_index[indices] = np.arange(len(indices))
     own = local_index[faces]
-    tongue = _part(TONGUE, rest[indices], own[(own >= 0).all(axis=1)], "mandible", None)
-    return tuple(tongue if part.name == TONGUE else part for part in head.parts)
+    tongue = _part(TONGUE_NAME, rest[indices], own[(own >= 0).all(axis=1)], "mandible", None)
+    return tuple(tongue if part.name == TONGUE_NAME else part for part in head.parts)
 
 
 def _part(

@@ -23,11 +23,11 @@ from risorius.geometry.directions import unit_vectors
 
 from .bodies import Shaped
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb, picture_kind
-from .surface import METRES
+from .surface import METRES_PER_MILLIMETRE
 
 # Usual units of files [mm], and the greatest factor between a face's size and the usual size.
-UNITS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
-MOST_OFF = 1.25
+UNIT_LENGTHS = (1.0, 10.0, 25.4, 100.0, 304.8, 1000.0)
+UNIT_TOLERANCE = 1.25
 CLAMP_TO_EDGE = 33071
 LARGEST_SHORT = 65535  # greatest number of 16 bits, which glTF forbids as a vertex index
 
@@ -242,14 +242,14 @@ def root_matrix(to_millimetres: Similarity) -> Floats64:
     is_turn = abs(np.linalg.det(axes)) > 0.5
     unit = unit_of(to_millimetres.scale)
     matrix = np.eye(4)
-    matrix[:3, :3] = METRES * unit * (axes if is_turn else rotation)
+    matrix[:3, :3] = METRES_PER_MILLIMETRE * unit * (axes if is_turn else rotation)
     return matrix
 
 
 def unit_of(scale: float) -> float:
     """Return the unit of a file [mm]; scale: the unit for which a face has the usual size [mm]."""
-    unit = min(UNITS, key=lambda each: abs(np.log(scale / each)))
-    return unit if max(scale / unit, unit / scale) < MOST_OFF else scale
+    unit = min(UNIT_LENGTHS, key=lambda each: abs(np.log(scale / each)))
+    return unit if max(scale / unit, unit / scale) < UNIT_TOLERANCE else scale
 
 
 def _singles(values: Floats64) -> npt.NDArray[np.float32]:

@@ -19,11 +19,11 @@ import risorius
 
 ARRAY_BUFFER = 34962  # target of a buffer view with vertices
 ELEMENT_ARRAY_BUFFER = 34963  # target of a buffer view with corners of triangles
-COMPONENT_TYPES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
-TYPES: dict[tuple[int, ...], str] = {
+COMPONENT_CODES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
+ACCESSOR_TYPES: dict[tuple[int, ...], str] = {
     (): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4",
 }  # fmt: skip
-ALIGNMENT = 4  # [bytes], of chunks and of arrays in them
+CHUNK_ALIGNMENT = 4  # [bytes], of chunks and of arrays in them
 
 
 class Glb:
@@ -76,9 +76,9 @@ class Glb:
         """
         accessor: dict[str, Any] = {
             "bufferView": self._view(np.ascontiguousarray(values).tobytes(), target),
-            "componentType": COMPONENT_TYPES[values.dtype.name],
+            "componentType": COMPONENT_CODES[values.dtype.name],
             "count": len(values),
-            "type": TYPES[values.shape[1:]],
+            "type": ACCESSOR_TYPES[values.shape[1:]],
         }
         if is_bounded:
             accessor["min"] = np.atleast_1d(values.min(axis=0)).tolist()
@@ -97,13 +97,13 @@ class Glb:
         numbers = nonzero_rows.astype(short)
         indices = {
             "bufferView": self._view(numbers.tobytes(), None),
-            "componentType": COMPONENT_TYPES[numbers.dtype.name],
+            "componentType": COMPONENT_CODES[numbers.dtype.name],
         }
         values = {
             "bufferView": self._view(np.ascontiguousarray(vectors[nonzero_rows]).tobytes(), None)
         }
         accessor = {
-            "componentType": COMPONENT_TYPES["float32"],
+            "componentType": COMPONENT_CODES["float32"],
             "count": count,
             "type": "VEC3",
             "min": vectors.min(axis=0).tolist(),
@@ -118,7 +118,7 @@ class Glb:
             self._zeros[count] = self.add(
                 "accessors",
                 {
-                    "componentType": COMPONENT_TYPES["float32"],
+                    "componentType": COMPONENT_CODES["float32"],
                     "count": count,
                     "type": "VEC3",
                     "min": [0.0, 0.0, 0.0],
@@ -178,7 +178,7 @@ class Glb:
 
     def _view(self, data: bytes, target: int | None) -> int:
         """Add aligned bytes as a buffer view; return its index."""
-        self._numbers += b"\0" * (-len(self._numbers) % ALIGNMENT)
+        self._numbers += b"\0" * (-len(self._numbers) % CHUNK_ALIGNMENT)
         view = {"buffer": 0, "byteOffset": len(self._numbers), "byteLength": len(data)}
         self._numbers += data
         return self.add("bufferViews", view if target is None else {**view, "target": target})
@@ -193,4 +193,4 @@ def picture_kind(content: bytes) -> str | None:
 
 
 def _padded(data: bytes, filler: bytes) -> bytes:
-    return data + filler * (-len(data) % ALIGNMENT)
+    return data + filler * (-len(data) % CHUNK_ALIGNMENT)

@@ -20,7 +20,7 @@ import numpy as np
 from risorius.assets.fitting.lips import LipCut
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.gltf import StoredPiece
-from risorius.assets.gltf_content import COMPONENT_TYPES, content_of, decompressed_chunks
+from risorius.assets.gltf_content import TYPE_OF_COMPONENT, content_of, decompressed_chunks
 from risorius.geometry.arrays import Floats32, Integers
 
 from .bodies import Shaped
@@ -193,7 +193,7 @@ class GltfShapes:
         """Copy an array with weights of `old` shapes, and add `added` zeros at each time."""
         found = self._document["accessors"][accessor]
         view = self._document["bufferViews"][found["bufferView"]]
-        kind = np.dtype(COMPONENT_TYPES[found["componentType"]])
+        kind = np.dtype(TYPE_OF_COMPONENT[found["componentType"]])
         start = view.get("byteOffset", 0) + found.get("byteOffset", 0)
         values = np.frombuffer(self._glb.data(), kind, found["count"], start)
         rows = values.reshape(-1, max(old, 1))

@@ -26,14 +26,14 @@ from ..stopping import cleaned_up_if_stopped
 from .bodies import Shaped
 from .poses import Pose, rest_in
 
-PAIRS = (  # sums of shapes that move the same skin
+CHOSEN_SUMS = (  # sums of shapes that move the same skin
     ("jawOpen", "mouthPucker"),
     ("jawOpen", "mouthSmileLeft", "mouthSmileRight"),
     ("eyeBlinkLeft", "eyeLookDownLeft"),
     ("noseSneerLeft", "mouthUpperUpLeft"),
 )
-CANDIDATES = 4  # number of simulated pairs per chosen pair
-OPPOSITES = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
+CANDIDATE_COUNT = 4  # number of simulated pairs per chosen pair
+OPPOSITE_SHAPES = (("jawLeft", "jawRight"), ("mouthLeft", "mouthRight"))
 
 
 @dataclass(frozen=True)
@@ -124,9 +124,9 @@ def table(
     poses: Mapping[str, tuple[Pose, Pose]],
     corrected: Sequence[tuple[str, str]] = (),
 ) -> list[Difference]:
-    """Return the errors of PAIRS whose shapes exist; arguments as in `Sums`."""
+    """Return the errors of CHOSEN_SUMS whose shapes exist; arguments as in `Sums`."""
     sums = Sums(scene, poses, corrected)
-    return [sums.difference(names) for names in PAIRS if set(names) <= set(poses)]
+    return [sums.difference(names) for names in CHOSEN_SUMS if set(names) <= set(poses)]
 
 
 def worth_correcting(
@@ -134,10 +134,10 @@ def worth_correcting(
 ) -> list[tuple[str, str]]:
     """Return at most `count` pairs of shapes whose sums have the greatest errors, greatest first.
 
-    CANDIDATES times `count` pairs are simulated: those whose shapes have most skin in common.
+    CANDIDATE_COUNT times `count` pairs are simulated: those whose shapes have most skin in common.
     """
     sums = Sums(scene, poses)
-    tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: CANDIDATES * count]
+    tried = sorted(sums.pairs, key=lambda pair: -sums.shared(*pair))[: CANDIDATE_COUNT * count]
     bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         found = [(sums.difference(pair), pair) for pair in bar]
@@ -172,7 +172,7 @@ def corrected(shaped: Shaped, pairs: Sequence[tuple[str, str]], names: Sequence[
 
 def _are_opposite(first: str, second: str) -> bool:
     """Whether two shapes exclude each other, or move two sides that hardly share skin."""
-    if (first, second) in OPPOSITES or (second, first) in OPPOSITES:
+    if (first, second) in OPPOSITE_SHAPES or (second, first) in OPPOSITE_SHAPES:
         return True
     if twin_of(first) == second and not first.startswith("mouth"):
         return True

@@ -23,11 +23,11 @@ from risorius.assets.wavefront import joined_lines, maps_of
 from risorius.geometry.arrays import Floats64
 
 from .avatar import Avatar, FileHead
-from .surface import METRES
+from .surface import METRES_PER_MILLIMETRE
 
 OBJ_NAMES = re.compile(r"\w[\w.]*\.obj")  # names of files that this module writes
-ELEMENT = re.compile(rb"(?m)^[ \t]*([vf])[ \t]+([^\r\n#]*)")
-VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
+ELEMENT_LINE = re.compile(rb"(?m)^[ \t]*([vf])[ \t]+([^\r\n#]*)")
+VERTEX_LINE = re.compile(rb"(?m)^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
 
 
 def write_obj_folder(avatar: Avatar, folder: Path) -> None:
@@ -64,7 +64,7 @@ def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
 def _has_plain_lines(content: bytes, file: FileHead) -> bool:
     """Whether lines of an OBJ can be kept: none continues in the next, and none is UTF-16."""
     is_continued = re.search(rb"\\[ \t]*\r?\n", content) is not None
-    return not is_continued and len(VERTEX.findall(content)) == _count_of(file)
+    return not is_continued and len(VERTEX_LINE.findall(content)) == _count_of(file)
 
 
 def _count_of(file: FileHead) -> int:
@@ -134,7 +134,7 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
             lines.append(b"f " + b" ".join(words))
         return b"\n".join(lines)
 
-    return ELEMENT.sub(line, text)
+    return ELEMENT_LINE.sub(line, text)
 
 
 def _cut_polygons(
@@ -178,7 +178,7 @@ def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
             return found[0]
         return ("v " + " ".join(f"{each:.9g}" for each in points[number])).encode()
 
-    return VERTEX.sub(line, text)
+    return VERTEX_LINE.sub(line, text)
 
 
 def _triangles(avatar: Avatar, changes: list[Floats64]) -> str:
@@ -189,7 +189,7 @@ def _triangles(avatar: Avatar, changes: list[Floats64]) -> str:
     for shaped, change in zip(avatar.shapes, changes, strict=True):
         points = shaped.body.rest + change
         if file is None:
-            points = METRES * points
+            points = METRES_PER_MILLIMETRE * points
         else:
             points = file.head.to_millimetres.inverse.points(points)
         lines.append(f"g {shaped.body.name}")

@@ -22,7 +22,7 @@ from risorius.geometry.mesh_graph import pieces_of
 
 from ..errors import UserError
 
-ROLES = {  # role of a piece -> its motion
+MOTION_OF_ROLE = {  # role of a piece -> its motion
     "eye_left": "eyeball, turns with the left eye",
     "eye_right": "eyeball, turns with the right eye",
     "upper_teeth": "upper teeth or gums, fixed to the cranium",
@@ -34,12 +34,12 @@ ROLES = {  # role of a piece -> its motion
     "body": "body or clothes, without motion",
     "hidden": "not drawn; the vertices stay in the file",
 }
-IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
-FACE = slice(17, 68)  # landmarks without the jaw line
+MOUTH_PART_NAMES = ("teeth", "gums", "tongue")  # beginnings of names of built-in parts
+FACE_LANDMARKS = slice(17, 68)  # landmarks without the jaw line
 FACE_MARGIN = 12.0  # [mm]; greatest distance of lashes and brows from the box of these landmarks
-CHIN = 8  # landmark
-LOWER_LIP = 57  # landmark below the centre of the lower lip
-NOSE_BRIDGE = 27  # landmark
+CHIN_LANDMARK = 8  # landmark
+LOWER_LIP_LANDMARK = 57  # landmark below the centre of the lower lip
+NOSE_BRIDGE_LANDMARK = 27  # landmark
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class FilePiece:
 
     number: number of the piece in options.
     vertices: vertex indices in the file, (n,).
-    role: one of ROLES.
+    role: one of MOTION_OF_ROLE.
     centre: centre of the bounding box [mm], (3,).
     name: name of the object or group in the file, or "".
     """
@@ -126,7 +126,7 @@ def _role_of(
     ):
         return "on_skin"
     # A collar reaches up to the chin; long hair hangs down from above the chin.
-    if points[:, 1].max() < landmarks[CHIN, 1]:
+    if points[:, 1].max() < landmarks[CHIN_LANDMARK, 1]:
         return "body"
     return "hair"
 
@@ -138,7 +138,7 @@ def _is_on_face(
 
     distance: distances of the points from the skin [mm], (n,). landmarks: [mm], (68, 3).
     """
-    face = landmarks[FACE]
+    face = landmarks[FACE_LANDMARKS]
     is_on_face = (centre > face.min(axis=0) - FACE_MARGIN) & (
         centre < face.max(axis=0) + FACE_MARGIN
     )
@@ -153,17 +153,21 @@ def _is_beard(points: Floats64, centre: Floats64, landmarks: Floats64) -> bool:
     low = points.min(axis=0)
     high = points.max(axis=0)
     jaw_line = landmarks[:17]
-    is_low = low[1] < landmarks[LOWER_LIP, 1] and high[1] < landmarks[NOSE_BRIDGE, 1]
+    is_low = (
+        low[1] < landmarks[LOWER_LIP_LANDMARK, 1] and high[1] < landmarks[NOSE_BRIDGE_LANDMARK, 1]
+    )
     below_chin = 15.0  # [mm] from the chin down to the top of a goatee; clothes begin lower
-    is_low = is_low and high[1] > landmarks[CHIN, 1] - below_chin
+    is_low = is_low and high[1] > landmarks[CHIN_LANDMARK, 1] - below_chin
     is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and centre[2] > jaw_line[:, 2].mean()
-    is_central = abs(centre[0] - landmarks[CHIN, 0]) < 15.0
+    is_central = abs(centre[0] - landmarks[CHIN_LANDMARK, 0]) < 15.0
     return bool(is_low and is_ahead and is_central)
 
 
 def _role_in_mouth(points: Floats64, centre: Floats64, head: FittedHead) -> str | None:
     """Return the role of a piece near the built-in teeth or tongue; None for other pieces."""
-    parts = {part.name: part.vertices for part in head.parts if part.name.startswith(IN_MOUTH)}
+    parts = {
+        part.name: part.vertices for part in head.parts if part.name.startswith(MOUTH_PART_NAMES)
+    }
     if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
         return None
     around = np.vstack([*parts.values()])
@@ -237,10 +241,10 @@ def corrected(pieces: Sequence[FilePiece], corrections: Sequence[str]) -> list[F
     roles: dict[int, str] = {}
     for text in corrections:
         which, _, role = text.rpartition("=")
-        if role not in ROLES:
+        if role not in MOTION_OF_ROLE:
             raise UserError(
                 f"--piece: was '{text}', must be NUMBER=ROLE or NAME=ROLE as the printed lines "
-                f"have them; roles are {', '.join(ROLES)}"
+                f"have them; roles are {', '.join(MOTION_OF_ROLE)}"
             )
         named = [piece.number for piece in pieces if piece.name == which]
         roles.update(dict.fromkeys(named or _numbers_in(which, len(pieces)), role))
@@ -272,7 +276,7 @@ def described(pieces: Sequence[FilePiece]) -> list[str]:
             last = first
         group = pieces[first : last + 1]
         count = sum(len(piece.vertices) for piece in group)
-        what = ROLES[group[0].role]
+        what = MOTION_OF_ROLE[group[0].role]
         if len(group) == 1:
             x, y, z = group[0].centre
             label = f"piece {group[0].number}"

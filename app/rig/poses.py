@@ -12,13 +12,13 @@ from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.transforms import moved_points
 
 from ..errors import UserError
-from ..motion.curves import ACTION_UNITS, sided
-from ..recordings.names import ARKIT, VISEMES
+from ..motion.curves import ACTION_UNIT_LAYER, sided
+from ..recordings.names import ARKIT_SHAPES, VISEME_NAMES
 from ..scenes import FaceScene
 
-KINDS = ("arkit", "units", "visemes", "expressions")
+SHAPE_KINDS = ("arkit", "units", "visemes", "expressions")
 STILL_STEP = 0.001  # [mm] per step; a face that moves less is at rest
-CRANIUM = "cranium"  # name of a bone
+CRANIUM_BONE = "cranium"  # name of a bone
 HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
 
@@ -39,10 +39,10 @@ class Pose:
 def pose_of(scene: FaceScene) -> Pose:
     """Return the current pose of a scene."""
     bones = scene.bone_transforms()
-    to_cranium = np.linalg.inv(bones[CRANIUM])
+    to_cranium = np.linalg.inv(bones[CRANIUM_BONE])
     weights = scene.face.head_weight
     return Pose(
-        without_head_pose(np.array(scene.positions), bones[CRANIUM], weights),
+        without_head_pose(np.array(scene.positions), bones[CRANIUM_BONE], weights),
         {name: to_cranium @ matrix for name, matrix in bones.items()},
         {part.name: part.vertices for part in scene.parts},
     )
@@ -86,16 +86,16 @@ def shape_names(scene: FaceScene, kinds: Sequence[str]) -> tuple[str, ...]:
     found: list[str] = []
     for kind in kinds:
         if kind == "arkit":
-            found += ARKIT
+            found += ARKIT_SHAPES
         elif kind == "visemes":
-            found += VISEMES
+            found += VISEME_NAMES
         elif kind == "expressions":
             found += scene.expressions
         elif kind == "units":
-            units = sided(scene, ACTION_UNITS)
+            units = sided(scene, ACTION_UNIT_LAYER)
             found += [name for name in units if not set(scene.moved_by(name)) <= HEAD_CONTROLS]
         else:
-            raise UserError(f"--shapes: '{kind}' is unknown; allowed are {', '.join(KINDS)}")
+            raise UserError(f"--shapes: '{kind}' is unknown; allowed are {', '.join(SHAPE_KINDS)}")
     return tuple(dict.fromkeys(found))
 
 

@@ -17,7 +17,7 @@ from risorius.geometry.texels import Texels, rates
 
 from ..scenes import Scene
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .surface import METRES, MovingSurface
+from .surface import METRES_PER_MILLIMETRE, MovingSurface
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def add_mesh(
         return glb.accessor(rows, ARRAY_BUFFER, is_bounded=is_bounded)
 
     attributes = {
-        "POSITION": of_vertices(METRES * (surface.rest - origin), is_bounded=True),
+        "POSITION": of_vertices(METRES_PER_MILLIMETRE * (surface.rest - origin), is_bounded=True),
         "NORMAL": of_vertices(piece.normals),
     }
     if surface.uv is not None:
@@ -91,7 +91,7 @@ def add_mesh(
     mesh: dict[str, Any] = {"name": surface.name, "primitives": [primitive]}
     if len(piece.targets):
         primitive["targets"] = [
-            {"POSITION": changes_of(METRES * moved), "NORMAL": changes_of(bent)}
+            {"POSITION": changes_of(METRES_PER_MILLIMETRE * moved), "NORMAL": changes_of(bent)}
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
         mesh["weights"] = [0.0] * len(piece.targets)

@@ -19,11 +19,11 @@ from risorius.geometry.arrays import Floats64
 
 from ..scenes import Scene
 from .glb import Glb
-from .poses import CRANIUM
-from .surface import METRES
+from .poses import CRANIUM_BONE
+from .surface import METRES_PER_MILLIMETRE
 
-NECK = "neck"  # name of a bone
-MANDIBLE = "mandible"  # name of a bone
+NECK_BONE = "neck"  # name of a bone
+MANDIBLE_BONE = "mandible"  # name of a bone
 
 
 class Skeleton:
@@ -59,16 +59,16 @@ class Skeleton:
             self.roots = [self._add(bone, None) for bone in sorted(used)]
             return
         pivots = scene.face.simulation.bones.pivots()
-        self._pivots = {NECK: pivots[CRANIUM], **pivots}
-        self.roots = [self._add(NECK, None)]
-        head = self._add(CRANIUM, NECK)
+        self._pivots = {NECK_BONE: pivots[CRANIUM_BONE], **pivots}
+        self.roots = [self._add(NECK_BONE, None)]
+        head = self._add(CRANIUM_BONE, NECK_BONE)
         # Shapes move all parts at the jaw, so no part but a beard belongs to the mandible.
-        for bone in sorted((used | {MANDIBLE}) - {CRANIUM, NECK}):
-            self._add(bone, CRANIUM)
+        for bone in sorted((used | {MANDIBLE_BONE}) - {CRANIUM_BONE, NECK_BONE}):
+            self._add(bone, CRANIUM_BONE)
         if not skins:
             return
         to_bone = np.eye(4, dtype=np.float32)
-        to_bone[3, :3] = -METRES * pivots[CRANIUM]  # stored by columns
+        to_bone[3, :3] = -METRES_PER_MILLIMETRE * pivots[CRANIUM_BONE]  # stored by columns
         matrices = glb.accessor(np.stack([to_bone, to_bone]))
         joints = {"joints": [*self.roots, head], "inverseBindMatrices": matrices}
         self.skin = glb.add("skins", joints)
@@ -90,10 +90,10 @@ class Skeleton:
         local = self._motions(bone)
         if parent is not None:
             local = np.linalg.inv(self._motions(parent)) @ local
-        shift = METRES * (self.pivot(bone) - self.pivot(parent))
+        shift = METRES_PER_MILLIMETRE * (self.pivot(bone) - self.pivot(parent))
         self._nodes[bone] = {"name": bone, "translation": shift.tolist()}
         node = self._glb.add("nodes", self._nodes[bone])
-        translations = METRES * local[:, :3, 3]
+        translations = METRES_PER_MILLIMETRE * local[:, :3, 3]
         still_motion = 1e-7  # [m] or change of a quaternion; smaller motion is left out
         if np.abs(translations - shift).max() > still_motion:
             self._glb.animate(node, "translation", translations)

@@ -11,7 +11,7 @@ from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.transforms import moved_points
 
-METRES = 0.001  # metres in a millimetre; animation programs read numbers as metres
+METRES_PER_MILLIMETRE = 0.001  # metres in a millimetre; animation programs read numbers as metres
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,12 @@ from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.normals import vertex_areas
 
 from ..motion import play
-from ..recordings.names import ARKIT
+from ..recordings.names import ARKIT_SHAPES
 from ..scenes import FaceScene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from .curves import shape_curves
-from .linearity import CANDIDATES, Difference, Sums
+from .linearity import CANDIDATE_COUNT, Difference, Sums
 from .poses import Pose, pose_of, rest_in
 
 FRAMES_PER_SECOND = 15.0  # rate at which the take is sampled
@@ -76,14 +76,14 @@ def worth_correcting_on(
     Only pairs that the take plays together on the same skin are simulated. Pairs are chosen one
     after another; each reduces the squared error most. If no pair reduces it, the choice ends.
     """
-    weights = dict(zip(ARKIT, take.curves.T, strict=True))
-    sums = Sums(scene, {name: poses[name] for name in ARKIT})
+    weights = dict(zip(ARKIT_SHAPES, take.curves.T, strict=True))
+    sums = Sums(scene, {name: poses[name] for name in ARKIT_SHAPES})
     played = {
         pair: float((weights[pair[0]] * weights[pair[1]]).sum()) * sums.shared(*pair)
         for pair in sums.pairs
     }
     together = [pair for pair, share in played.items() if share > 0.0]
-    tried = sorted(together, key=lambda pair: -played[pair])[: CANDIDATES * count]
+    tried = sorted(together, key=lambda pair: -played[pair])[: CANDIDATE_COUNT * count]
     if not tried:
         return []
     displacements = []
@@ -146,7 +146,7 @@ def difference_on(
     farthest = 0.0
     squares = []
     for frame, displacement in enumerate(take.displacements):
-        weights = dict(zip(ARKIT, take.curves[frame].tolist(), strict=True))
+        weights = dict(zip(ARKIT_SHAPES, take.curves[frame].tolist(), strict=True))
         off = np.linalg.norm(sums.sum(weights) - displacement, axis=1)
         farthest = max(farthest, float(off.max()))
         squares.append(float(area_weights @ off**2))

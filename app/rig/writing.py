@@ -14,7 +14,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..files import folder_atomically, written_atomically
 from .avatar import Avatar, FileHead, Report, RigRequest, avatar_of
-from .bodies import EYES
+from .bodies import EYE_BONES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
 from .gltf_copy import GltfShapes, read_document
@@ -23,9 +23,9 @@ from .obj_folder import OBJ_NAMES, write_obj_folder
 from .poses import rest_in
 from .scene_file import add_pieces, piece_of
 from .skeleton import Skeleton
-from .surface import METRES
+from .surface import METRES_PER_MILLIMETRE
 
-LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes, without the side
+LOOK_SHAPES = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")  # shapes, without the side
 
 
 def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -> tuple[int, int]:
@@ -87,7 +87,7 @@ def _add_scene(glb: Glb, avatar: Avatar) -> list[int]:
     pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes]
     used = {piece.bone for piece in pieces if piece.bone is not None}
     skeleton = Skeleton(avatar.scene, used, glb)
-    for eye in used & set(EYES):
+    for eye in used & set(EYE_BONES):
         skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
     roots = add_pieces(glb, avatar.scene, pieces, skeleton)
     return [*skeleton.roots, *roots]
@@ -135,12 +135,12 @@ def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
     pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes[1:]]
     used = {piece.bone for piece in pieces if piece.bone is not None}
     skeleton = Skeleton(avatar.scene, used, glb, skins=False)
-    for eye in used & set(EYES):
+    for eye in used & set(EYE_BONES):
         skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
     add_pieces(glb, avatar.scene, pieces, skeleton)
     back = file.head.to_millimetres.inverse
     matrix = np.eye(4)
-    matrix[:3, :3] = back.scale / METRES * back.rotation
+    matrix[:3, :3] = back.scale / METRES_PER_MILLIMETRE * back.rotation
     matrix[:3, 3] = back.shift
     node = {
         "name": "parts",
@@ -158,7 +158,7 @@ def looks_of(avatar: Avatar, eye: str, turn: Floats64) -> dict[str, Any]:
     """
     side = eye.removeprefix("eye_").capitalize()
     found = {}
-    for look in LOOKS:
+    for look in LOOK_SHAPES:
         name = look + side
         if name in avatar.names:
             matrix = rest_in(avatar.scene, {name: 1.0}).matrices[eye][:3, :3]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from risorius import assets, sim
-from risorius.assets.coarse import COARSE, coarse_head
+from risorius.assets.coarse import COARSE_NAME, coarse_head
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import person_called, person_in_words
 
@@ -27,7 +27,7 @@ from .scene import Scene
 
 __all__ = [
     "BUILT_IN",
-    "COARSE",
+    "COARSE_NAME",
     "NO_IMAGES",
     "OWN_HEAD",
     "SCENES",
@@ -46,7 +46,7 @@ __all__ = [
     "head_in_words",
 ]
 
-LOG = logging.getLogger("risorius.heads")  # reports changes of a user's head
+HEAD_LOG = logging.getLogger("risorius.heads")  # reports changes of a user's head
 
 
 @dataclass(frozen=True)
@@ -93,15 +93,15 @@ def fit_users_head(head: Path, landmarks: Path | None) -> FittedHead:
     """Fit the user's own head. landmarks: None for a known topology."""
     fitted = fit_head(head, landmarks)
     for note in fitted.notes:
-        LOG.warning("risorius: %s: %s", head, note)
+        HEAD_LOG.warning("risorius: %s: %s", head, note)
     return fitted
 
 
 def called_head(who: int | str) -> FittedHead:
     """Return a person, given by number or name, or the coarse head."""
-    return coarse_head() if who == COARSE else person_called(who)
+    return coarse_head() if who == COARSE_NAME else person_called(who)
 
 
 def head_in_words(who: int | str) -> str:
     """Describe a head, given by its number or name, for lists."""
-    return "Coarse head" if who == COARSE else person_in_words(who)
+    return "Coarse head" if who == COARSE_NAME else person_in_words(who)

@@ -10,7 +10,7 @@ import numpy as np
 from risorius import assets
 from risorius.assets.fitting import FittedHead
 from risorius.assets.identities import Person, built_in_hair, recoloured, with_lids
-from risorius.assets.model import MASK
+from risorius.assets.model import MASK_NAME
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.read_only import read_only
 
@@ -136,7 +136,7 @@ class FaceScene(Scene):
 
 def _on_skin(part: HeadPart, rest_positions: Floats64, faces: Integers32) -> HeadPart:
     """Return the part, or for a part on the skin one that follows the skin."""
-    if part.name == MASK:
+    if part.name == MASK_NAME:
         return Mask(at_rest(part), rest_positions)
     return part if part.roots is None else SkinPart(at_rest(part), rest_positions, faces)
 

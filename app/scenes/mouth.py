@@ -13,13 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
-from risorius.assets.model import MASK, Part
+from risorius.assets.model import MASK_NAME, Part
 from risorius.geometry.arrays import Floats32, Floats64
 from risorius.geometry.read_only import read_only
 
 from .bent_part import FaceNow, FacePart, HeadPart
 
-IN_MOUTH = ("teeth", "gums", "tongue")  # beginnings of names of parts; the cavity is dark already
+# Beginnings of names of parts; the cavity is dark already.
+MOUTH_PART_NAMES = ("teeth", "gums", "tongue")
 
 
 class Gloom(NamedTuple):
@@ -33,15 +34,15 @@ class Gloom(NamedTuple):
 
 # Chosen by eye. Light on a molar is reddish, because flesh has reflected it. Little light is lost:
 # dark molars would look broken, or missing at the corner of the mouth.
-REDDENING = (0.9, 1.2, 1.25)
-GUMS = Gloom(2.0, 34.0, 0.2)
-TONGUE = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
-UPPER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENING)
-LOWER_TEETH = Gloom(2.0, 36.0, 0.25, REDDENING)
+REDDENING_EXPONENTS = (0.9, 1.2, 1.25)
+GUM_GLOOM = Gloom(2.0, 34.0, 0.2)
+TONGUE_GLOOM = Gloom(-5.0, 53.0, 0.48, (0.92, 1.25, 1.3))
+UPPER_TEETH_GLOOM = Gloom(4.0, 40.0, 0.15, REDDENING_EXPONENTS)
+LOWER_TEETH_GLOOM = Gloom(2.0, 36.0, 0.25, REDDENING_EXPONENTS)
 # The file's gums are nearly black in the notches between crowns, which are light. In the corner of
 # a smile these notches were dark shapes. Gums keep this exponent of their painted shade.
-GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of the file
-GUM_SHADE = 0.35
+LIGHTEST_GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest gum of the file
+GUM_SHADE_EXPONENT = 0.35
 
 
 class Tongue(FacePart):
@@ -54,7 +55,7 @@ class Tongue(FacePart):
         super().__init__(replace(part, shine=0.42))  # wet
         self.front = front
         self.unlit = read_only(_painted_tongue(part))  # in full light
-        self.colours = read_only(_shaded(part.vertices, self.unlit, front, TONGUE))
+        self.colours = read_only(_shaded(part.vertices, self.unlit, front, TONGUE_GLOOM))
 
     def follow(self, now: FaceNow) -> None:
         """Set another shape and its colours; do nothing if the array is the same."""
@@ -62,7 +63,7 @@ class Tongue(FacePart):
             return
         self.shape = now.tongue
         self.take_shape(self.shape)
-        self.colours = read_only(_shaded(self.shape, self.unlit, self.front, TONGUE))
+        self.colours = read_only(_shaded(self.shape, self.unlit, self.front, TONGUE_GLOOM))
 
 
 class MouthWalls(FacePart):
@@ -96,14 +97,16 @@ def shaded_mouth(parts: Sequence[Part]) -> tuple[HeadPart, ...]:
         """Return a darkened part of the mouth, or another part unchanged."""
         if part.name == "tongue":
             return Tongue(part, float(front))
-        if part.mandible_shares is not None and part.name != MASK:
+        if part.mandible_shares is not None and part.name != MASK_NAME:
             return MouthWalls(part, part.mandible_shares)
-        if not part.name.startswith(IN_MOUTH):
+        if not part.name.startswith(MOUTH_PART_NAMES):
             return part
-        gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)
+        gloom = {"teeth_upper": UPPER_TEETH_GLOOM, "teeth_lower": LOWER_TEETH_GLOOM}.get(
+            part.name, GUM_GLOOM
+        )
         own = part.colours
         if part.name.startswith("gums"):
-            own = GUM * np.clip(own / GUM, 0.0, 1.0) ** GUM_SHADE
+            own = LIGHTEST_GUM * np.clip(own / LIGHTEST_GUM, 0.0, 1.0) ** GUM_SHADE_EXPONENT
         return replace(part, colours=_shaded(part.vertices, own, front, gloom))
 
     return tuple(shaded(part) for part in parts)

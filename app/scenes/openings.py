@@ -13,7 +13,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Floats64
 
-LIP_LANDMARKS = slice(60, 68)  # landmarks of the inner edges of the lips
+INNER_LIP_LANDMARKS = slice(60, 68)  # landmarks of the inner edges of the lips
 # Bone of the eyeball -> landmarks.
 LID_LANDMARKS = {"eye_right": slice(36, 42), "eye_left": slice(42, 48)}
 BEHIND_LIPS = ("teeth", "gums", "tongue", "oral_cavity")  # beginnings of names of parts
@@ -38,7 +38,7 @@ def rims_of(landmarks: Floats64, point_count: int) -> dict[str, Rim]:
     of_lids = _rim_weights(6, point_count)
     of_lips = _rim_weights(8, point_count)
     rims = {bone: Rim(of_lids @ landmarks[lids], True) for bone, lids in LID_LANDMARKS.items()}
-    return {**rims, "mouth": Rim(of_lips @ landmarks[LIP_LANDMARKS], False)}
+    return {**rims, "mouth": Rim(of_lips @ landmarks[INNER_LIP_LANDMARKS], False)}
 
 
 def opening_before(name: str, bone: str) -> str:

@@ -30,8 +30,8 @@ from .easings import ALLOWED_EASINGS, Easing, easing_named, easing_names, hermit
 
 Easings = npt.NDArray[np.uint8]  # rows of easings.Easing
 
-DECIMALS = 6  # to which numbers from sliders and clocks are rounded
-LONGEST_FILE = 2**25  # [bytes], about three quarters of an hour of a recorded face
+SCRIPT_DECIMALS = 6  # to which numbers from sliders and clocks are rounded
+LONGEST_SCRIPT_FILE = 2**25  # [bytes], about three quarters of an hour of a recorded face
 POSE_SECONDS = 1.0  # duration of a script that is one pose
 LARGEST_NUMBER = 86_400.0  # largest number in a script; as a time [s] it is a day
 Number = Annotated[float, Within(-LARGEST_NUMBER, LARGEST_NUMBER)]
@@ -324,12 +324,12 @@ def raised_within(values: npt.ArrayLike, amount: float, low: float, high: float)
     """Raise values by an amount within limits; values beyond the limits may stay there."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
-    return np.round(higher, DECIMALS)
+    return np.round(higher, SCRIPT_DECIMALS)
 
 
 def rounded(number: float) -> float:
     """Round a time or a value for a script, to remove meaningless digits."""
-    return round(float(number), DECIMALS)
+    return round(float(number), SCRIPT_DECIMALS)
 
 
 def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:

@@ -39,7 +39,7 @@ class Easing(NamedTuple):
     @property
     def name(self) -> str:
         """The word for the easing, or its slopes, such as "0.5,2"."""
-        return _WORDS.get(self) or free_easing(*self.slopes)
+        return NAME_OF_EASING.get(self) or free_easing(*self.slopes)
 
     def progress(self, fraction: float) -> float:
         """Return the fraction of the value's change at a fraction of the time; both are 0 to 1."""
@@ -56,7 +56,7 @@ EASINGS = {
     "hold": Easing(0, 0, True),
 }
 ALLOWED_EASINGS = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, such as '0.5,2'"
-_WORDS = {easing: name for name, easing in EASINGS.items()}
+NAME_OF_EASING = {easing: name for name, easing in EASINGS.items()}
 
 
 def hermite(fraction: Value, start: Value, end: Value) -> Value:

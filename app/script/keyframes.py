@@ -16,13 +16,13 @@ import numpy.typing as npt
 
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from . import DECIMALS, LARGEST_NUMBER, Channel, Key, Pose, Script, rounded
+from . import LARGEST_NUMBER, SCRIPT_DECIMALS, Channel, Key, Pose, Script, rounded
 from .easings import easing_named
 from .key_sets import KeySet, is_any_of
 
-POSES = ""  # the track of whole poses; any other track has its control's name
+POSE_TRACK = ""  # the track of whole poses; any other track has its control's name
 FRAME_TIME = 1.0 / 30.0  # [s] to which times are rounded; films of the window have such frames
-TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
+EQUAL_TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
@@ -32,7 +32,7 @@ ScriptAndKeys = tuple[Script, KeySet]  # a script, and some of its keys
 
 def all_keys(script: Script) -> KeySet:
     """Return the tracks and times of all keys of a script, the poses first."""
-    poses = {POSES: np.array([pose.time for pose in script.poses])}
+    poses = {POSE_TRACK: np.array([pose.time for pose in script.poses])}
     return KeySet(poses | {name: track.times for name, track in script.tracks.items()})
 
 
@@ -52,16 +52,17 @@ def time_beyond(script: Script, time: float, direction: int) -> float:
     all_times = all_keys(script).times.values()
     if direction > 0:
         later = (
-            times[np.searchsorted(times, time + TOLERANCE, "right") :][:1] for times in all_times
+            times[np.searchsorted(times, time + EQUAL_TOLERANCE, "right") :][:1]
+            for times in all_times
         )
         return float(min(np.concatenate([*later, []]), default=time))
-    earlier = (times[: np.searchsorted(times, time - TOLERANCE)][-1:] for times in all_times)
+    earlier = (times[: np.searchsorted(times, time - EQUAL_TOLERANCE)][-1:] for times in all_times)
     return float(max(np.concatenate([*earlier, []]), default=time))
 
 
 def pose_at(script: Script, time: float) -> Pose | None:
     """Return the pose at exactly this time [s], or None."""
-    return next((pose for pose in script.poses if abs(pose.time - time) < TOLERANCE), None)
+    return next((pose for pose in script.poses if abs(pose.time - time) < EQUAL_TOLERANCE), None)
 
 
 # Changes
@@ -81,7 +82,7 @@ def moved(
     for name, columns in _columns(source or script, chosen).items():
         is_chosen = is_any_of(columns[0], chosen.times[name])
         times, *rest = _picked(columns, is_chosen)
-        arrived[name] = np.round(times + shift, DECIMALS)
+        arrived[name] = np.round(times + shift, SCRIPT_DECIMALS)
         nothing = _picked(columns, np.arange(0))
         there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
@@ -110,7 +111,7 @@ def eased(script: Script, chosen: KeySet, easing: str) -> Script:
     for name, columns in _columns(script, chosen).items():
         is_chosen = is_any_of(columns[0], chosen.times[name])
         last = columns[-1].copy()  # the easings, or the poses, which hold their easings
-        if name == POSES:
+        if name == POSE_TRACK:
             last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
         else:
             last[is_chosen] = easing_named(easing)
@@ -125,7 +126,7 @@ def raised(
     poses = script.poses
     tracks = dict(script.tracks)
     for name, times in chosen.times.items():
-        if name == POSES:
+        if name == POSE_TRACK:
             chosen_times = set(times.tolist())
             poses = tuple(
                 pose.raised(posed, amount, limits) if pose.time in chosen_times else pose
@@ -148,7 +149,7 @@ def with_duration(script: Script, seconds: float) -> Script:
 
 def differing(script: Script, time: float, values: ControlValues) -> list[str]:
     """Return the controls whose values differ from the script's values at `time` [s]."""
-    is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > TOLERANCE
+    is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > EQUAL_TOLERANCE
     return [name for name, differs in zip(values, is_away.tolist(), strict=True) if differs]
 
 
@@ -170,7 +171,9 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     possible = values.limits.pose(wanted)
     posed = {name: rounded(possible[name]) for name in wanted}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
-    keys = {name: value for name, value in rest.items() if abs(value - added[name]) > TOLERANCE}
+    keys = {
+        name: value for name, value in rest.items() if abs(value - added[name]) > EQUAL_TOLERANCE
+    }
     present = pose_at(script, time)
     nonzero = {name: value for name, value in posed.items() if value}
     if present:
@@ -178,7 +181,7 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     else:
         pose = Pose(time, nonzero, _easing_at(script.poses, time), None)
     poses = _joined(_pose_columns(script.poses), _pose_columns([pose]))
-    with_pose = _with_tracks(script, {POSES: poses})
+    with_pose = _with_tracks(script, {POSE_TRACK: poses})
     return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
@@ -207,8 +210,8 @@ def with_keys_of(
         poses = tuple(pose if each is present else each for each in script.poses)
         script = replace(script, poses=poses)
     new = {name: 0.0 for name in keys if name not in script.tracks}
-    earlier = [pose.time for pose in script.poses if pose.time < time - TOLERANCE]
-    later = [pose.time for pose in script.poses if pose.time > time + TOLERANCE]
+    earlier = [pose.time for pose in script.poses if pose.time < time - EQUAL_TOLERANCE]
+    later = [pose.time for pose in script.poses if pose.time > time + EQUAL_TOLERANCE]
     for end in (*earlier[-1:], *later[:1]):
         script = _with_track_keys(script, end, new)
     return _reaching(_with_track_keys(script, time, keys), time)
@@ -219,7 +222,7 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     changed = {}
     for name, value in values.items():
         track = script.tracks.get(name, Channel([], []))
-        present = np.flatnonzero(np.abs(track.times - time) < TOLERANCE)
+        present = np.flatnonzero(np.abs(track.times - time) < EQUAL_TOLERANCE)
         later = np.flatnonzero(track.times > time)
         key_time = float(track.times[present[0]]) if len(present) else time
         after = present if len(present) else later
@@ -239,7 +242,7 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 
 def _columns(script: Script, chosen: KeySet) -> dict[str, Columns]:
     """Return all keys of each track that has a chosen key."""
-    columns = {POSES: _pose_columns(script.poses)} if POSES in chosen.times else {}
+    columns = {POSE_TRACK: _pose_columns(script.poses)} if POSE_TRACK in chosen.times else {}
     return columns | {
         name: _channel_columns(track)
         for name, track in script.tracks.items()
@@ -264,7 +267,7 @@ def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
 
 def _joined(there: Columns, arriving: Columns) -> Columns:
     """Merge keys in the order of time; an arriving key replaces an old key at the same time."""
-    left = _picked(there, ~is_any_of(there[0], arriving[0], TOLERANCE))
+    left = _picked(there, ~is_any_of(there[0], arriving[0], EQUAL_TOLERANCE))
     if not len(left[0]):
         return arriving
     both = tuple(np.concatenate(pair) for pair in zip(left, arriving, strict=True))
@@ -276,7 +279,7 @@ def _with_tracks(script: Script, changed: Mapping[str, Columns]) -> Script:
     poses = script.poses
     tracks = dict(script.tracks)
     for name, columns in changed.items():
-        if name == POSES:
+        if name == POSE_TRACK:
             pairs = zip(*(column.tolist() for column in columns), strict=True)
             poses = tuple(replace(pose, time=time) for time, pose in pairs)
         elif len(columns[0]):

@@ -32,7 +32,7 @@ from ..files import read_text, save_text
 from ..text import as_text, in_one_line
 from . import (
     LARGEST_NUMBER,
-    LONGEST_FILE,
+    LONGEST_SCRIPT_FILE,
     POSE_SECONDS,
     Channel,
     Key,
@@ -116,7 +116,7 @@ class _File(Record):
 
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
-    text = read_text(path, what="script", longest=LONGEST_FILE)
+    text = read_text(path, what="script", longest=LONGEST_SCRIPT_FILE)
     # A longer script takes a while to read, so a line reports it.
     if len(text) > 2**20 and sys.stderr.isatty():
         click.echo(f"... reading {in_one_line(path)}, {len(text) >> 20} MB", err=True)
@@ -175,9 +175,9 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 def save_script(target: Path, script: Script) -> None:
     """Write a script file atomically; raise UserError if it cannot be written."""
     text = script_text(script, target.parent)
-    if len(text) > LONGEST_FILE:
+    if len(text) > LONGEST_SCRIPT_FILE:
         raise UserError(
-            f"{target}: the script is too long; it may have {LONGEST_FILE >> 20} MB: "
+            f"{target}: the script is too long; it may have {LONGEST_SCRIPT_FILE >> 20} MB: "
             "delete some keys"
         )
     save_text(target, text)

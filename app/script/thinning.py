@@ -10,12 +10,14 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.jit import njit
 
-from . import DECIMALS, Channel
+from . import SCRIPT_DECIMALS, Channel
 
-TOLERANCE = 2e-3  # largest error of a line between keys, which is invisible
+LINE_TOLERANCE = 2e-3  # largest error of a line between keys, which is invisible
 
 
-def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:
+def thinned(
+    times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = LINE_TOLERANCE
+) -> Channel:
     """Return linear keys at some samples; the error at each sample is at most `tolerance`.
 
     times: times of the samples [s], shape (T,), T at least 1, rising. They are rounded to
@@ -27,7 +29,7 @@ def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLE
     "Computational-geometric methods for polygonal approximations of a curve" (1986). One pass
     narrows the possible directions.
     """
-    moments = np.array(times, np.float64).round(DECIMALS)
+    moments = np.array(times, np.float64).round(SCRIPT_DECIMALS)
     is_later = np.diff(moments, prepend=-np.inf) > 0.0
     moments = moments[is_later]
     samples = np.array(values, np.float64)[is_later]

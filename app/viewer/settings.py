@@ -26,33 +26,33 @@ from risorius.schema import (
     read_valid_entries,
 )
 
-from ..anatomy import OPACITY, SIDE_SIGNS, SKIN_ALONE, STRUCTURES, AnatomyView
-from ..capture.outputs import FORMATS as FILMS
+from ..anatomy import SIDE_SIGNS, SKIN_ALONE, SKIN_OPACITY, STRUCTURES, AnatomyView
+from ..capture.outputs import FILM_FORMATS as FILMS
 from ..errors import UserError
-from ..export.formats import FORMATS as MOTION
+from ..export.formats import MOTION_FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
 from ..light_maps import LIGHT_SUFFIXES, is_light, scene_light
-from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
+from ..refining.presets import CHANGED_SUFFIX, FIRST_PRESET, PRESETS, STATIC_REFINER, Refinement
 from ..scenes import Drawable
 from ..text import in_one_line
 from .interface.gui import THEMES
 
 SIDES_SHOWN = 200, 16384  # [screen units]: limits of the window's width and height
-COMPARISONS = ("off", "wipe", "side by side")
-SKINS = {  # whether the skin is textured, and its colour
+COMPARISON_NAMES = ("off", "wipe", "side by side")
+SKIN_CHOICES = {  # whether the skin is textured, and its colour
     "textured": (True, render.SKIN),
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
 }
-RENDER_BACKGROUNDS = ("light", "dark", "white", "black")
-BACKGROUNDS = {
+BACKGROUND_NAMES = ("light", "dark", "white", "black")
+BACKGROUND_CHOICES = {
     "theme": None,
-    **{name: getattr(render, name.upper()) for name in RENDER_BACKGROUNDS},
+    **{name: getattr(render, name.upper()) for name in BACKGROUND_NAMES},
     "map": None,  # the light's map; for a lamp, the theme's background
 }
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: of the person.
-TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
-TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
+TONE_ANGLES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
+TONE_ANGLES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 FRAMES_KIND = "frames"  # pictures in a folder
 
 
@@ -66,11 +66,15 @@ class Kind(NamedTuple):
     fastest: float = 240.0
 
 
-KINDS = {end[1:]: Kind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()}
-KINDS[FRAMES_KIND] = Kind("Pictures in a folder (.png)", "", True, True)
+EXPORT_KINDS = {
+    end[1:]: Kind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()
+}
+EXPORT_KINDS[FRAMES_KIND] = Kind("Pictures in a folder (.png)", "", True, True)
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
-    KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
+    EXPORT_KINDS[_each.name] = Kind(
+        f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False
+    )
 
 
 def _light(value: Any) -> str:
@@ -94,7 +98,7 @@ def _option(value: Any) -> Any:
 
 def _refiners() -> list[str | None]:
     """Return the names of available refiners that split triangles; None: the look's refiner."""
-    return [None, *(name for name in refine.refiners.available() if name != STATIC)]
+    return [None, *(name for name in refine.refiners.available() if name != STATIC_REFINER)]
 
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
@@ -112,23 +116,25 @@ class Display(Record):
     # Options that replace options of the look: name of a refiner -> name of an option -> value.
     options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
-    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the kind of comparison
-    beside: Annotated[str, OneOf((STATIC, *PRESETS))] = STATIC  # a look, or the unrefined mesh
+    compare: Annotated[str, OneOf(COMPARISON_NAMES)] = "off"  # the kind of comparison
+    beside: Annotated[str, OneOf((STATIC_REFINER, *PRESETS))] = (
+        STATIC_REFINER  # a look, or the unrefined mesh
+    )
     divider: Fraction = 0.5  # place of a wipe's line, as a share of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
     splits: Flag = False  # colour triangles by their splits
     wires: Flag = False  # outline triangles with more splits than at rest
-    skin: Annotated[str, OneOf(SKINS)] = "textured"
+    skin: Annotated[str, OneOf(SKIN_CHOICES)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from texture maps
     wrinkles: Fraction = 1.0  # depth of wrinkles where skin is compressed
     light: Annotated[str, MadeFrom(Any, _light)] = "studio"  # the name of a `scene_light`
-    background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
-    tone: Annotated[str, OneOf(TONES)] = "own"  # tone of textured skin
+    background: Annotated[str, OneOf(BACKGROUND_CHOICES)] = "theme"
+    tone: Annotated[str, OneOf(TONE_ANGLES)] = "own"  # tone of textured skin
     has_hair: Flag = True  # whether a head with textured skin has hair
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Opacity of the skin over muscles and skull, and the side of the face that shows these.
-    skin_opacity: Fraction = OPACITY
+    skin_opacity: Fraction = SKIN_OPACITY
     dissect: Annotated[str, OneOf(SIDE_SIGNS)] = "both"
 
     @property
@@ -159,7 +165,7 @@ class Display(Record):
     def preset_as_changed(self, scene: Drawable) -> str:
         """Return the look's name, with a mark if the refinement of this scene differs."""
         asked = self.refinement_on(scene)
-        return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
+        return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED_SUFFIX}"
 
     def refinement_on(self, scene: Drawable) -> Refinement:
         """Return the refinement of this scene."""
@@ -169,7 +175,11 @@ class Display(Record):
     @property
     def refinement_beside(self) -> Refinement:
         """The refinement of a comparison's left side."""
-        return Refinement(refiner=STATIC) if self.beside == STATIC else Refinement(self.beside)
+        return (
+            Refinement(refiner=STATIC_REFINER)
+            if self.beside == STATIC_REFINER
+            else Refinement(self.beside)
+        )
 
     @property
     def share(self) -> float:
@@ -199,7 +209,7 @@ class Display(Record):
 class ExportChoices(Record):
     """The choices of the last export."""
 
-    kind: Annotated[str, OneOf(KINDS)] = "mp4"
+    kind: Annotated[str, OneOf(EXPORT_KINDS)] = "mp4"
     size: Annotated[tuple[int, int], Within(*(16, 8192))] = (
         1280,
         720,
@@ -260,7 +270,7 @@ def display_of(
         dissect=anatomy.side,
         **style,
     )
-    if refinement.refiner == STATIC:
+    if refinement.refiner == STATIC_REFINER:
         display.is_refined = False
     else:
         display.refiner = refinement.refiner

@@ -23,7 +23,7 @@ from .face_place import placed
 from .mesh_validation import COVER_DEPTH, covering
 
 # Landmarks around each opening: the upper chain from corner to corner, then the lower chain back.
-OPENINGS = {
+OPENING_LANDMARKS = {
     "mouth": ((60, 61, 62, 63, 64), (64, 65, 66, 67, 60)),
     "right eye": ((36, 37, 38, 39), (39, 40, 41, 36)),
     "left eye": ((42, 43, 44, 45), (45, 46, 47, 42)),
@@ -59,7 +59,7 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
     own = np.flatnonzero(piece[mesh.faces[:, 0]] == face_piece)
     openings = []
     triangles = []
-    for name, chains in OPENINGS.items():
+    for name, chains in OPENING_LANDMARKS.items():
         corners = [number for chain in chains for number in chain[:-1]]
         upper, lower = (_smooth(points[list(chain)]) for chain in chains)
         found = own[_filling(vertices, mesh.faces[own], points[corners], upper, lower)]

@@ -42,8 +42,8 @@ LANDMARK_COUNT = 68
 LIST_KEY = "landmarks"  # key of the landmarks, if the file has several lists
 GUESSED_KEY = "guessed"
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST_COORDINATE, FARTHEST_COORDINATE)]
-INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
-OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
+INNER_LIP_LANDMARKS = ((61, 62, 63), (65, 66, 67))  # upper, lower
+OUTER_LIP_LANDMARKS = ((50, 51, 52), (56, 57, 58))
 
 
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]:
@@ -219,9 +219,11 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
     _, nearest = scipy.spatial.cKDTree(vertices[used]).query(points)
     indices: Integers32 = used[nearest].astype(np.int32)
     to_upper, to_lower = (
-        path_lengths(vertices, faces, indices[list(lip)]).min(axis=0) for lip in OUTER_LIPS
+        path_lengths(vertices, faces, indices[list(lip)]).min(axis=0) for lip in OUTER_LIP_LANDMARKS
     )
-    for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
+    for lip, is_own in zip(
+        INNER_LIP_LANDMARKS, (to_upper < to_lower, to_lower < to_upper), strict=True
+    ):
         own = np.flatnonzero(is_own)
         if len(own):
             _, nearest = scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])
@@ -247,7 +249,7 @@ class Group:
         )
 
 
-GROUPS = (
+LANDMARK_GROUPS = (
     Group("jaw line", 0, 17, "from the subject's right ear over the chin to the left ear"),
     Group("right brow", 17, 5, "from outside in"),
     Group("left brow", 22, 5, "from inside out"),
@@ -267,7 +269,7 @@ def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
 
     In a closed mouth this test cannot separate the inner lips; `check_lips` does.
     """
-    return [group for group in GROUPS if _is_disordered(group, points, template)]
+    return [group for group in LANDMARK_GROUPS if _is_disordered(group, points, template)]
 
 
 def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
@@ -284,9 +286,11 @@ def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
 
 def check_lips(skin: SkinPiece) -> None:
     """Raise AssetError if the landmarks of each inner lip lie on the skin of the other lip."""
-    inner = skin.landmarks[np.ravel(INNER_LIPS)]
+    inner = skin.landmarks[np.ravel(INNER_LIP_LANDMARKS)]
     paths = path_lengths(skin.vertices, skin.faces, inner)
-    to_upper, to_lower = (paths[:, skin.landmarks[list(lip)]].min(axis=1) for lip in OUTER_LIPS)
+    to_upper, to_lower = (
+        paths[:, skin.landmarks[list(lip)]].min(axis=1) for lip in OUTER_LIP_LANDMARKS
+    )
     is_upper = to_upper < to_lower
     if not is_upper[:3].any() and is_upper[3:].all():
-        raise AssetError(GROUPS[-3].complaint)
+        raise AssetError(LANDMARK_GROUPS[-3].complaint)

@@ -21,14 +21,14 @@ from ...geometry.mesh_graph import edge_graph, path_to, pieces_of
 from ...geometry.sides import edges_of, sides_of
 from ..meshes import Mesh
 
-UPPER_LIP = (60, 61, 62, 63, 64)
-LOWER_LIP = (60, 67, 66, 65, 64)
+UPPER_LIP_CHAIN = (60, 61, 62, 63, 64)
+LOWER_LIP_CHAIN = (60, 67, 66, 65, 64)
 OUTER_MIDDLES = (51, 57)  # landmarks on the outer borders of the upper and the lower lip
 
 
 def lips_line(landmarks: Floats64) -> Floats64:
     """Return the line between the lips, from right to left, (5, 3); landmarks: (68, 3)."""
-    return (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
+    return (landmarks[list(UPPER_LIP_CHAIN)] + landmarks[list(LOWER_LIP_CHAIN)]) / 2.0
 
 
 def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
@@ -117,7 +117,7 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     indices of the landmarks, (68,). landmarks: points [unit of the mesh], (68, 3).
     """
     line = lips_line(landmarks)
-    gaps = landmarks[list(UPPER_LIP)] - landmarks[list(LOWER_LIP)]
+    gaps = landmarks[list(UPPER_LIP_CHAIN)] - landmarks[list(LOWER_LIP_CHAIN)]
     most_gap = 0.12  # greatest gap between lips, relative to the distance of the mouth's corners
     width = np.linalg.norm(line[-1] - line[0])
     if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
@@ -143,12 +143,14 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     for place, source in enumerate(sources):
         new.setdefault(int(same[source]), len(same) + place)
     on_path = scipy.spatial.cKDTree(mesh.vertices[inner])
-    for upper, lower, place in zip(UPPER_LIP[1:4], LOWER_LIP[1:4], line[1:4], strict=True):
+    for upper, lower, place in zip(
+        UPPER_LIP_CHAIN[1:4], LOWER_LIP_CHAIN[1:4], line[1:4], strict=True
+    ):
         vertex = int(inner[on_path.query(place)[1]])
         indices[upper] = vertex
         indices[lower] = new[vertex]
         points[[upper, lower]] = mesh.vertices[vertex]
-    for corner, vertex in ((UPPER_LIP[0], path[0]), (UPPER_LIP[-1], path[-1])):
+    for corner, vertex in ((UPPER_LIP_CHAIN[0], path[0]), (UPPER_LIP_CHAIN[-1], path[-1])):
         indices[corner] = vertex
         points[corner] = mesh.vertices[vertex]
     return LipCut(sources, np.sort(corners[below], axis=1), indices, points)

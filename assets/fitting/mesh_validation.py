@@ -19,7 +19,7 @@ from ...geometry.sides import sides_of
 from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
-MOST_TRIANGLES = 250_000
+MOST_FITTED_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # chosen; with fewer, eyes and mouth have no shape
 # Skin joins two lips, or two lids, if the shortest path between them is shorter than this fraction
 # of the path around a corner of the opening. The path through a bag behind them is longer.
@@ -71,7 +71,7 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
     number = np.cumsum(is_in_piece).astype(np.int32) - 1
     file_faces = np.flatnonzero(is_in_piece[faces[:, 0]] & is_triangle)
     skin = number[faces[file_faces]]
-    _check_count(skin, FEWEST_TRIANGLES, MOST_TRIANGLES)
+    _check_count(skin, FEWEST_TRIANGLES, MOST_FITTED_TRIANGLES)
     return SkinPiece(vertices[used], skin, number[landmarks], used, file_faces)
 
 
@@ -107,7 +107,7 @@ def _check_count(faces: Integers32, fewest: float, most: float) -> None:
         cure = "reduce" if len(faces) > most else "subdivide"
         raise AssetError(
             f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
-            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
+            f"{MOST_FITTED_TRIANGLES}: {cure} it in a modelling program"
         )
 
 

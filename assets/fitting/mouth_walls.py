@@ -25,7 +25,7 @@ from ..model import Part
 from .warp import Similarity
 
 ShareArray = Floats64 | Floats32
-WALLS = "oral_cavity"  # beginning of the names of these parts
+WALL_NAME = "oral_cavity"  # beginning of the names of these parts
 
 
 @dataclass(frozen=True)

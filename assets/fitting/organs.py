@@ -20,10 +20,10 @@ from ...geometry.normals import vertex_normals
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .eyeballs import ball_of_pieces, ball_of_socket
-from .mouth_walls import WALLS, FittedSkin, within_skin
+from .mouth_walls import WALL_NAME, FittedSkin, within_skin
 from .warp import Similarity, ThinPlateSpline
 
-EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
+EYE_LANDMARK_RANGES = {"right": slice(36, 42), "left": slice(42, 48)}
 RIGID_PARTS = ("gums", "teeth", "tongue")  # beginnings of the names of rigid parts
 LID_CLEARANCE = 0.3  # [mm] between the eyeball and the skin of the lids
 RIM_ROWS = 8  # rows of a rim's vertices, from the lids' edge backward
@@ -39,7 +39,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     eyes = []
     lid_depth = 5.0  # [mm] from the landmarks on a lid's edge, within which skin belongs to the lid
     for eye in known.eyes:
-        around = EYE_LANDMARKS[eye.name]
+        around = EYE_LANDMARK_RANGES[eye.name]
         source = known.vertices[known.landmarks[around]]
         target = fitted.landmarks[around]
         scale = _extent(target) / _extent(source)
@@ -166,7 +166,7 @@ def place_parts(
         else:
             placed = _bent(part, warp)
         parts.append(placed)
-    walls = [number for number, part in enumerate(parts) if part.name.startswith(WALLS)]
+    walls = [number for number, part in enumerate(parts) if part.name.startswith(WALL_NAME)]
     placed_walls = within_skin([parts[number] for number in walls], fitted, mouth, jaws)
     for number, wall in zip(walls, placed_walls, strict=True):
         parts[number] = wall

@@ -29,11 +29,11 @@ from ..data_files import read_toml
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
-from ..user_files import MOST_VERTICES, named, read_file
+from ..user_files import MOST_FILE_VERTICES, named, read_file
 from .landmark_file import LANDMARK_COUNT
 from .mesh_validation import vertices_of_pieces
 
-Number = Annotated[int, Within(0, MOST_VERTICES)]
+Number = Annotated[int, Within(0, MOST_FILE_VERTICES)]
 OUTER_EYE_CORNERS = (36, 45)  # landmarks
 
 

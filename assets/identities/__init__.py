@@ -6,10 +6,10 @@
 A person can replace the built-in head everywhere: `sim.create(person)`, `FaceScene(person)`.
 """
 
-from ..model import GLASSES, MASK
+from ..model import GLASSES_NAME, MASK_NAME
 from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
-from .hair import HAIR
+from .hair import HAIR_NAME
 from .lids import with_lids
 from .mask import MASK_COLOURS
 from .named import (
@@ -23,20 +23,20 @@ from .named import (
 )
 from .person import Person, make_person
 from .population import DARKEST_TONE, EVERYBODY, LIGHTEST_TONE, Population, drawn_irises
-from .shirts import COLLARS, SHIRT_COLOURS
+from .shirts import COLLAR_BUILDERS, SHIRT_COLOURS
 from .space import Identity, Sex, sample_identity
-from .wear import FRAMES, wearing
+from .wear import GLASSES_FRAMES, wearing
 
 __all__ = [
-    "COLLARS",
+    "COLLAR_BUILDERS",
     "DARKEST_TONE",
     "EVERYBODY",
-    "FRAMES",
-    "GLASSES",
-    "HAIR",
+    "GLASSES_FRAMES",
+    "GLASSES_NAME",
+    "HAIR_NAME",
     "LIGHTEST_TONE",
-    "MASK",
     "MASK_COLOURS",
+    "MASK_NAME",
     "NAMED_PERSONS",
     "SHIRT_COLOURS",
     "Colours",

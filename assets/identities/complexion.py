@@ -29,13 +29,13 @@ from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
-from ..pigments import BLOOD, SHADOW, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
+from ..pigments import BLOOD, SHAVED_HAIR, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
 from ..smooth import shrunk
 from .brows import painted, stubble
 from .eyes import beside_skin, with_irises
 from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
-from .hair import CUTS, HAIR, OWN_CUT, Fall, hair_of, scalp_of
+from .hair import HAIR_CUTS, HAIR_NAME, OWN_CUT, Fall, hair_of, scalp_of
 from .larynx import larynx_of
 from .lids import with_folds
 from .long_hair import falling_hair, tied_hair
@@ -127,7 +127,7 @@ def recoloured(
     lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
     # Double precision would take twice as long.
     single = np.float32
-    beard = features.beard * SHADOW
+    beard = features.beard * SHAVED_HAIR
     absorbed = Absorbed(
         (density.astype(single), redness.astype(single), lips.astype(single), beard.astype(single)),
         (tints.melanin, tints.blood, tints.lips, tints.beard),
@@ -207,7 +207,7 @@ def coloured(
         blood=blood,
         features=features,
         haired_as=angle,
-        fringe=fringe_of(CUTS[person.identity.cut]),
+        fringe=fringe_of(HAIR_CUTS[person.identity.cut]),
         shrink=shrink,
     )
     return replace(
@@ -289,8 +289,8 @@ def _with_hair(
     person: Person, parts: Sequence[Part], angle: float, features: Features, behind: Floats32
 ) -> tuple[Part, ...]:
     """Replace the hair among a person's parts by hair of the person's cut; angle: ITA [deg]."""
-    others = tuple(part for part in parts if not part.name.startswith(HAIR))
-    cut = CUTS[person.identity.cut]
+    others = tuple(part for part in parts if not part.name.startswith(HAIR_NAME))
+    cut = HAIR_CUTS[person.identity.cut]
     uv = person.uv.astype(np.float64)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
     light = _hair_light(angle, features)

@@ -25,14 +25,14 @@ from ..smooth import Points, smooth_step
 from ..topology import quarter
 from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 
-HAIR = "hair"  # the name of the part
+HAIR_NAME = "hair"  # the name of the part
 SLEEK_GLOSS = 0.4  # specular strength of hair that is combed smooth
 LENGTHWISE_FACTOR = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
 
 
 @dataclass(frozen=True)
 class Cut:
-    """The cut and the combing of hair; all numbers of `CUTS` are chosen by eye.
+    """The cut and the combing of hair; all numbers of `HAIR_CUTS` are chosen by eye.
 
     whorl: direction from the head's centre to the whorl (x left, y up, z forward).
     sides: length of strands on the sides and the back of the head [mm].
@@ -67,7 +67,7 @@ class Fall:
 
 
 OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 21.0, 0.5, behind=50.0)  # cut of the built-in head
-CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
+HAIR_CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
         "parted": Fall(26.0, 77.0),
@@ -204,7 +204,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
-        name=HAIR,
+        name=HAIR_NAME,
         vertices=(points + MEAN_PLACE * way).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
@@ -323,7 +323,7 @@ def from_within(hair: Part, faces: Integers32) -> Part:
         "faces": number.reshape(-1, 3).astype(np.int32),
         "colours": inner_light * rows["colours"],
     }
-    return replace(hair, name=HAIR + "_inside" + hair.name.removeprefix(HAIR), **rows)
+    return replace(hair, name=HAIR_NAME + "_inside" + hair.name.removeprefix(HAIR_NAME), **rows)
 
 
 def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:

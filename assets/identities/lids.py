@@ -26,7 +26,7 @@ from ..smooth import smooth_step
 from .person import Person
 from .relief import Relief, add_to, relief_of
 
-EYES = ("left", "right")
+EYE_SIDES = ("left", "right")
 EDGE_VERTEX_COUNT = 11  # vertices on the edge of an upper lid
 # Samples of the edge's curve, from which searches for the nearest point begin.
 CURVE_SAMPLE_COUNT = 81
@@ -36,7 +36,7 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
     """Draw the folds of a person's upper lids, which also show at rest, into wrinkles."""
     found = wrinkles.map.copy()
     size = len(found)
-    for side in EYES:
+    for side in EYE_SIDES:
         fold = fold_of(person, side, size)
         near = found[fold.rows, fold.columns, :3]
         down, right = np.gradient(fold.heights.astype(np.float32))
@@ -65,7 +65,7 @@ def _yielding() -> tuple[Floats32, Floats32]:
     head = load("head")
     across = head.wrinkles.across.copy()
     has_fold = np.zeros(len(across), np.float32)
-    for side in EYES:
+    for side in EYE_SIDES:
         edge = _edge(head.vertices, side)
         along = _nearest(head.vertices, edge)
         offset = head.vertices - _edge_weights(along) @ edge

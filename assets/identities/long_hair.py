@@ -20,7 +20,7 @@ from ..model import Part
 from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
-from .hair import HAIR, Cut, Fall, Scalp, from_within
+from .hair import HAIR_NAME, Cut, Fall, Scalp, from_within
 from .locks import FALLING_HAIR, INNER_TIPS, MEAN_PLACE, TIP_GROWTH, WOUND_HAIR, locks_on
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
@@ -92,7 +92,7 @@ def falling_hair(
     # strands in front would look like bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
-    hair = _layers(HAIR, bent, across[:, None], thick, dense, colour, _slide(along))
+    hair = _layers(HAIR_NAME, bent, across[:, None], thick, dense, colour, _slide(along))
     return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
 
 
@@ -220,7 +220,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = count * wide * place[..., 0] / (2.0 * np.pi)
-    tied = _layers(HAIR + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], light * colour)
+    tied = _layers(HAIR_NAME + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], light * colour)
     on_scalp = short.hair_of(cut, scalp, colour, length)
     locks = locks_on(tied, FALLING_HAIR if cut.tail else WOUND_HAIR)
     return (*on_scalp, from_within(tied, tied.faces), tied, locks)

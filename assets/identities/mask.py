@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
-from ..model import MASK, Part
+from ..model import MASK_NAME, Part
 from ..smooth import smooth_step
 from .person import Person
 from .wires import Colour, Tube, beside_head, joined, sheet, tube
@@ -62,7 +62,7 @@ def _joined(pieces: list[_Piece]) -> Part:
     """Join pieces to one part."""
     surface = joined([each.surface for each in pieces])
     return Part(
-        name=MASK,
+        name=MASK_NAME,
         vertices=surface.points.astype(np.float32),
         normals=surface.normals.astype(np.float32),
         faces=surface.faces,

@@ -23,7 +23,7 @@ from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
 from ..fitting.mouth_walls import FittedSkin, opened_jaws
-from ..fitting.organs import EYE_LANDMARKS, lids_on_eyes, place_parts
+from ..fitting.organs import EYE_LANDMARK_RANGES, lids_on_eyes, place_parts
 from ..fitting.warp import Similarity, ThinPlateSpline
 from ..loading import load
 from ..model import Eye, Head
@@ -245,7 +245,7 @@ def _named(known: Head) -> Integers32:
 
 def _eye(known: Head, eye: Eye, vertices: Floats64) -> Eye:
     """Place an eyeball behind its lids; its size varies less than the opening of the lids."""
-    corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
+    corners = known.landmarks[EYE_LANDMARK_RANGES[eye.name]][[0, 3]]
     before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
     scale = float(np.sqrt(now / before))
     lids = known.rings[f"eye_1_{eye.name}"]

@@ -34,7 +34,7 @@ SHIRT_COLOURS: Mapping[str, Colour] = MappingProxyType(
         "sky": (0.47, 0.59, 0.72),
     }
 )
-COLUMN_COUNT = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
+SHIRT_COLUMNS = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
 BAND_ROW = 4  # row of the built-in shirt at the upper outer edge of the band
 
 
@@ -46,11 +46,11 @@ class _Cloth(NamedTuple):
 
 
 def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
-    """Change the built-in shirt of a person to a colour of SHIRT_COLOURS and a collar of COLLARS.
+    """Give the built-in shirt a colour of SHIRT_COLOURS and a collar of COLLAR_BUILDERS.
 
     skin: vertices of the person's head [mm], (V, 3). Raises KeyError for other colours and collars.
     """
-    pieces = COLLARS[collar](shirt, skin, np.array(SHIRT_COLOURS[colour]))
+    pieces = COLLAR_BUILDERS[collar](shirt, skin, np.array(SHIRT_COLOURS[colour]))
     surface = joined([each.surface for each in pieces])
     return replace(
         shirt,
@@ -80,13 +80,13 @@ def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
 
 def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make a shirt with a high collar that is folded over."""
-    columns = np.linspace(0.0, COLUMN_COUNT, 3 * COLUMN_COUNT, endpoint=False)
+    columns = np.linspace(0.0, SHIRT_COLUMNS, 3 * SHIRT_COLUMNS, endpoint=False)
     surface = _Surface(shirt)
     band, root = (
         scipy.ndimage.gaussian_filter1d(surface.down(columns, depth)[0], 4.0, axis=0, mode="wrap")
         for depth in (np.zeros((1, 1)), np.full((1, 1), 17.0))
     )
-    to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / COLUMN_COUNT)
+    to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / SHIRT_COLUMNS)
     rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
     axis = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
@@ -96,7 +96,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
-    wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / COLUMN_COUNT)[:, None]
+    wave = 0.5 * np.sin(2.0 * np.pi * 3.0 * columns / SHIRT_COLUMNS)[:, None]
     rows = []
     for fraction, outside in profile:
         there = inner + fraction * (root - inner)
@@ -118,8 +118,8 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     down = np.linspace(0.0, 1.0, 13)[:, None]
     along = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # from one tip to the other
     opening = 0.35 + 3.6 * down**0.6  # columns between the midline and each edge of the collar
-    columns = opening + along * (COLUMN_COUNT - 2.0 * opening)
-    from_front = np.minimum(columns, COLUMN_COUNT - columns)
+    columns = opening + along * (SHIRT_COLUMNS - 2.0 * opening)
+    from_front = np.minimum(columns, SHIRT_COLUMNS - columns)
     length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
     fold = surface.down(columns, np.zeros_like(columns))
     hem = surface.down(columns, length) + 2.6 * surface.outward(columns, length)
@@ -175,8 +175,8 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     beside = 17.5
     line = lowest + (beside - lowest) * half
     found = surface.columns_at(58.0 * half, line)[:, 0]
-    columns = np.linspace(0.0, COLUMN_COUNT, 3 * COLUMN_COUNT, endpoint=False)
-    from_front = np.minimum(columns, COLUMN_COUNT - columns)
+    columns = np.linspace(0.0, SHIRT_COLUMNS, 3 * SHIRT_COLUMNS, endpoint=False)
+    from_front = np.minimum(columns, SHIRT_COLUMNS - columns)
     edge = np.interp(from_front, found, line[:, 0])
     ribbed = 15.0  # [mm]; width of the ribbed border
     steps = np.array([0.0, 0.0, 1.0, 4.0, 8.0, 12.0, ribbed, ribbed + 1.5, ribbed + 4.0])
@@ -197,32 +197,32 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     return [_in_colour(shirt, below), jersey]
 
 
-COLLARS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = MappingProxyType(
-    {"band": _banded, "roll": _rolled, "wings": _winged, "v": _pointed}
+COLLAR_BUILDERS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = (
+    MappingProxyType({"band": _banded, "roll": _rolled, "wings": _winged, "v": _pointed})
 )
 
 
 class _Surface:
     """The outer surface of the built-in shirt, from the upper edge of the band down.
 
-    A point has two coordinates: a fractional column, 0 to COLUMN_COUNT, and a depth below the edge
+    A point has two coordinates: a fractional column, 0 to SHIRT_COLUMNS, and a depth below the edge
     [mm].
     """
 
     def __init__(self, shirt: Part) -> None:
-        rows = (len(shirt.vertices) - 1) // COLUMN_COUNT
-        on_grid = shirt.vertices[: rows * COLUMN_COUNT].astype(np.float64)
-        grid = on_grid.reshape(rows, COLUMN_COUNT, 3)
+        rows = (len(shirt.vertices) - 1) // SHIRT_COLUMNS
+        on_grid = shirt.vertices[: rows * SHIRT_COLUMNS].astype(np.float64)
+        grid = on_grid.reshape(rows, SHIRT_COLUMNS, 3)
         self._grid = np.concatenate([grid, grid[:, :1]], axis=1)[BAND_ROW:-1]
         lengths = np.linalg.norm(np.diff(self._grid, axis=0), axis=-1)
-        self._depths = np.vstack([np.zeros(COLUMN_COUNT + 1), np.cumsum(lengths, axis=0)])
+        self._depths = np.vstack([np.zeros(SHIRT_COLUMNS + 1), np.cumsum(lengths, axis=0)])
         normals = vertex_normals(shirt.vertices.astype(np.float64), shirt.faces)
-        outward = normals[: rows * COLUMN_COUNT].reshape(rows, COLUMN_COUNT, 3)
+        outward = normals[: rows * SHIRT_COLUMNS].reshape(rows, SHIRT_COLUMNS, 3)
         self._normals = np.concatenate([outward, outward[:, :1]], axis=1)[BAND_ROW:-1]
 
     def lowest(self, columns: Floats64) -> Floats64:
         """Return depths of the shirt's lower edge [mm], of the shape of `columns`."""
-        return np.asarray(np.interp(columns, np.arange(COLUMN_COUNT + 1), self._depths[-1]))
+        return np.asarray(np.interp(columns, np.arange(SHIRT_COLUMNS + 1), self._depths[-1]))
 
     def down(self, columns: Floats64, depths: Floats64) -> Floats64:
         """Return points [mm], (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
@@ -237,13 +237,13 @@ class _Surface:
         """Find columns of the front, (r, n), where x is `across` [mm]; depths: [mm], (r, 1)."""
         places = np.linspace(-13.0, 13.0, 131)
         all_depths = np.broadcast_to(depths, (len(depths), len(places)))
-        found = self.down(places % COLUMN_COUNT, all_depths)
+        found = self.down(places % SHIRT_COLUMNS, all_depths)
         rows = [np.interp(x, line[:, 0], places) for x, line in zip(across, found, strict=True)]
-        return np.stack(rows) % COLUMN_COUNT
+        return np.stack(rows) % SHIRT_COLUMNS
 
     def _read(self, values: Floats64, columns: Floats64, depths: Floats64) -> Floats64:
         columns, depths = np.broadcast_arrays(columns, depths)
-        before = np.minimum(columns.astype(int), COLUMN_COUNT - 1)
+        before = np.minimum(columns.astype(int), SHIRT_COLUMNS - 1)
         fraction = columns - before
         lengths = self._depths[:, before] + fraction * np.diff(self._depths, axis=1)[:, before]
         row = np.clip((lengths <= depths).sum(axis=0) - 1, 0, len(lengths) - 2)

@@ -15,7 +15,7 @@ import numpy as np
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
-from ..fitting.organs import EYE_LANDMARKS
+from ..fitting.organs import EYE_LANDMARK_RANGES
 from ..loading import load
 
 
@@ -62,7 +62,7 @@ def _sockets() -> _Sockets:
     for a, b, c in head.faces.tolist():
         for first, second, wing in ((a, b, c), (b, c, a), (c, a, b)):
             corners.setdefault((min(first, second), max(first, second)), []).append(wing)
-    for side in EYE_LANDMARKS:
+    for side in EYE_LANDMARK_RANGES:
         rows = [head.rings[f"eye_{row}_{side}"].tolist() for row in range(5)]
         lid = {*rows[4][1:inner_count]}
         around = {vertex for row in rows for vertex in row}

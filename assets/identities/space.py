@@ -74,7 +74,7 @@ class Identity:
     - sex: decides the distribution of the weights.
     - age: also determines this distribution [years].
     - hair: factor on the lengths of the cut.
-    - cut: name of the hair cut (`CUTS` of hair.py).
+    - cut: name of the hair cut (`HAIR_CUTS` of hair.py).
     - weights: weights of the modes [standard deviations of people].
     - unevenness: added to the weights on the left side, and subtracted on the right side.
     - covered: height of the iris that the upper lid covers [mm].

@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
-from ..model import GLASSES, Part
+from ..model import GLASSES_NAME, Part
 from .mask import MASK_COLOURS, mask
 from .person import Person
 from .shirts import in_shirt
@@ -42,7 +42,7 @@ class Frame:
     shine: float
 
 
-FRAMES: Mapping[str, Frame] = MappingProxyType(
+GLASSES_FRAMES: Mapping[str, Frame] = MappingProxyType(
     {
         "round": Frame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.15),
         "rectangular": Frame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.08),
@@ -59,10 +59,10 @@ def wearing(
     frame: str | None = None,
     cover: str | None = None,
 ) -> Person:
-    """Dress a person in a shirt of SHIRT_COLOURS with a collar of COLLARS.
+    """Dress a person in a shirt of SHIRT_COLOURS with a collar of COLLAR_BUILDERS.
 
-    frame: glasses of FRAMES, or None. cover: a mask of MASK_COLOURS, or None. Other names raise
-    KeyError.
+    frame: glasses of GLASSES_FRAMES, or None. cover: a mask of MASK_COLOURS, or None. Other names
+    raise KeyError.
     """
     parts = [
         in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
@@ -74,7 +74,7 @@ def wearing(
         parts.append(sheet)
         nose = np.vstack([person.vertices, sheet.vertices])
     if frame is not None:
-        parts.append(glasses(person, FRAMES[frame], nose))
+        parts.append(glasses(person, GLASSES_FRAMES[frame], nose))
     return replace(person, parts=tuple(parts))
 
 
@@ -116,7 +116,7 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
         tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
     surface = joined(tubes)
     return Part(
-        name=GLASSES,
+        name=GLASSES_NAME,
         vertices=surface.points.astype(np.float32),
         normals=surface.normals.astype(np.float32),
         faces=surface.faces,

@@ -21,18 +21,18 @@ from risorius import assets, refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.refining.drawn_mesh import DrawnMesh
-from risorius.app.refining.presets import FIRST_PRESET, PAPERS_PRESET, STATIC, Refinement
+from risorius.app.refining.presets import FIRST_PRESET, PAPERS_PRESET, STATIC_REFINER, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.geometry.arrays import Flags, Floats64
 
-from ..canvas import CLAY, Canvas, Drawing, Shot, image_table, parts_without_hair
+from ..canvas import CLAY_STYLE, Canvas, Drawing, Shot, image_table, parts_without_hair
 from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .experiments import Outcome
 
 SEEN_CHANGE = 8.0  # levels of 255: a visible change
-LOOKS = (STATIC, PAPERS_PRESET, FIRST_PRESET)
+LOOK_COLUMNS = (STATIC_REFINER, PAPERS_PRESET, FIRST_PRESET)
 """One column for each look; the dense mesh comes after them."""
 
 
@@ -52,12 +52,12 @@ class Cell(Shot):
 def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
     """Error of each look relative to the static mesh, and the fraction of its changes that help."""
     rows = []
-    sums = {name: np.zeros(5) for name in LOOKS}
+    sums = {name: np.zeros(5) for name in LOOK_COLUMNS}
     for expression, cells in _draw_cells(size):
         truth = cells[-1]
         static = cells[0]
         maps = []
-        for name, cell in zip(LOOKS, cells, strict=False):
+        for name, cell in zip(LOOK_COLUMNS, cells, strict=False):
             is_changed = cell.difference(static) > SEEN_CHANGE
             is_nearer = cell.difference(truth) < static.difference(truth)
             helps = (is_changed & is_nearer).sum() / max(is_changed.sum(), 1)
@@ -74,7 +74,7 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
             maps.append((said, _map(cell.image, is_changed, is_nearer)))
         pictures = [
             (f"{name}, {cell.triangles}, {cell.rms(truth):.1f}", cell.image)
-            for name, cell in zip((*LOOKS, "dense mesh"), cells, strict=True)
+            for name, cell in zip((*LOOK_COLUMNS, "dense mesh"), cells, strict=True)
         ]
         title = f"{expression}: triangles, and RMS of the difference from the dense mesh"
         rows += [(title, pictures), (f"{expression}: changed pixels", maps)]
@@ -98,12 +98,16 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     simulation = fine_simulation(head, fine)
     coarse = coarse_head()
     scene = FaceScene(coarse)
-    asked = [Refinement(refiner=STATIC), Refinement(PAPERS_PRESET), Refinement(FIRST_PRESET)]
+    asked = [
+        Refinement(refiner=STATIC_REFINER),
+        Refinement(PAPERS_PRESET),
+        Refinement(FIRST_PRESET),
+    ]
     refiners = [(refiner_for(scene, each), coarse.file_vertices) for each in asked]
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append((dense, np.arange(len(fine.vertices), dtype=np.int32)))
     camera = camera_for(scene, "-32,3,1.25")  # three-quarter view
-    empty = replace(CLAY, background=render.BLACK)
+    empty = replace(CLAY_STYLE, background=render.BLACK)
     with Canvas(size) as canvas:
         parts = parts_without_hair(scene)
         for expression in ("joy", "surprise", "kiss"):
@@ -113,7 +117,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             for refiner, kept in refiners:
                 pictures = [
                     canvas.draw_image(refiner, now[kept], Drawing(camera, style, parts, bones))
-                    for style in (CLAY, empty)
+                    for style in (CLAY_STYLE, empty)
                 ]
                 is_head = (pictures[0] == pictures[1]).all(axis=2)
                 drawn = canvas.mesh_of(refiner)

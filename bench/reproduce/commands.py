@@ -18,7 +18,7 @@ from risorius.app.text import in_one_line
 from ..report import print_progress, processor, table
 from .experiments import EXPERIMENTS, Result
 
-PATH = click.Path(path_type=Path)
+PATH_TYPE = click.Path(path_type=Path)
 
 
 @click.command()
@@ -29,7 +29,7 @@ PATH = click.Path(path_type=Path)
     type=click.Choice(["all", *(experiment.name for experiment in EXPERIMENTS)]),
 )
 @click.option(
-    "-o", "--output", "folder", type=PATH, default=Path("out/reproduce"), show_default=True
+    "-o", "--output", "folder", type=PATH_TYPE, default=Path("out/reproduce"), show_default=True
 )
 @click.option("--rounds", type=click.IntRange(3, 10_000), help="Rounds of timing; by default 60.")
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:

@@ -110,10 +110,10 @@ def _claim(entry: dict[str, Any]) -> Claim:
     return Claim(**entry)
 
 
-_TABLE = tomllib.loads((Path(__file__).parent / "paper.toml").read_text(encoding="utf-8"))
+PAPERS_TABLE = tomllib.loads((Path(__file__).parent / "paper.toml").read_text(encoding="utf-8"))
 EXPERIMENTS = tuple(
     Experiment(**entry, claims=list(map(_claim, claims)))
-    for entry in _TABLE["experiment"]
+    for entry in PAPERS_TABLE["experiment"]
     for claims in [entry.pop("claim")]
 )
 """All experiments."""

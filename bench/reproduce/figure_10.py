@@ -26,16 +26,24 @@ from risorius.app.scenes.bent_part import HeadPart, at_rest
 from risorius.assets import Part
 from risorius.geometry.arrays import Flags, Unsigned8
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, Shot, image_table, parts_without_hair
+from ..canvas import (
+    FLAT_STYLE,
+    GOURAUD_STYLE,
+    Canvas,
+    Drawing,
+    Shot,
+    image_table,
+    parts_without_hair,
+)
 from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .border_turn import BorderTurn
 from .experiments import Outcome
 
 SUPERSAMPLING = 2  # factor on the resolution of drawn pixels
-SMOOTH = replace(GOURAUD, albedo=render.SKIN)
-MOUTH = 1  # channel of a picture of kinds: skin, mouth, background
-BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-GREEN = np.array([0.0, 1.0, 0.0], np.float32)
+SMOOTH_STYLE = replace(GOURAUD_STYLE, albedo=render.SKIN)
+MOUTH_CHANNEL = 1  # channel of a picture of kinds: skin, mouth, background
+BLUE_BACKGROUND = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+GREEN_COLOUR = np.array([0.0, 1.0, 0.0], np.float32)
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,7 @@ class Variant:
     splits_borders: bool = False  # by `displacement` and `BorderTurn`
 
 
-STATIC, PAPER, CUBIC, DETAIL = VARIANTS = (
+STATIC_VARIANT, PAPER_VARIANT, CUBIC_VARIANT, DETAIL_VARIANT = VARIANTS = (
     Variant("static", "none"),
     Variant("refined: paper", "kahler"),
     Variant("refined: cubic", "kahler", {"scheme": "cubic"}, splits_borders=True),
@@ -75,7 +83,7 @@ class Cell(Shot):
 
     def wrong(self, truth: Cell) -> Flags:
         """Flags of fine pixels in which only one of both pictures shows the mouth's opening."""
-        return np.asarray((self.kinds == MOUTH) != (truth.kinds == MOUTH))
+        return np.asarray((self.kinds == MOUTH_CHANNEL) != (truth.kinds == MOUTH_CHANNEL))
 
     def opening(self, truth: Cell) -> Image:
         """The picture of the opening."""
@@ -99,11 +107,11 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     for expression, cells in _draw_cells(size):
         named = {cell.title: cell for cell in cells}
         truth = cells[-1]
-        static = named[STATIC.title]
-        changed.append(100.0 * (named[CUBIC.title].difference(static) > seen_change).mean())
+        static = named[STATIC_VARIANT.title]
+        changed.append(100.0 * (named[CUBIC_VARIANT.title].difference(static) > seen_change).mean())
         for variant, errors, edges in (
-            (PAPER, papers_left, papers_outline),
-            (CUBIC, left, outline),
+            (PAPER_VARIANT, papers_left, papers_outline),
+            (CUBIC_VARIANT, left, outline),
         ):
             cell = named[variant.title]
             errors.append(cell.rms(truth) / static.rms(truth))
@@ -136,7 +144,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     refiners = []
     for variant in VARIANTS:
         options = dict(variant.options)
-        if variant is DETAIL:
+        if variant is DETAIL_VARIANT:
             options["scheme"] = refine.DetailScheme((fine.vertices, fine.faces))
         if variant.splits_borders:
             options["criterion"] = ["displacement", BorderTurn()]
@@ -146,7 +154,9 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     refiners.append(("dense mesh", dense, len(fine.vertices)))
     with Canvas((SUPERSAMPLING * size[0], SUPERSAMPLING * size[1])) as canvas:
         parts_at_lids = "lashes", "wet_edges"  # far from the lips
-        kinds_style = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
+        kinds_style = replace(
+            FLAT_STYLE, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE_BACKGROUND
+        )
         viewpoints = (
             Viewpoint("yawn", "-24,-4,5.2", (-0.1, 0.0)),
             Viewpoint("joy", "-30,0,5.2", (-0.1, 0.05)),
@@ -166,7 +176,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 skin = now[:count]  # the first vertices of the dense mesh are the coarse one's
                 smooth, kinds = (
                     canvas.draw_image(refiner, skin, Drawing(camera, style, each, bones))
-                    for style, each in ((SMOOTH, parts), (kinds_style, green))
+                    for style, each in ((SMOOTH_STYLE, parts), (kinds_style, green))
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
                 triangles = canvas.mesh_of(refiner).triangle_count
@@ -180,7 +190,7 @@ def _in_green(part: HeadPart) -> Part:
         at_rest(part),
         vertices=part.vertices,
         normals=part.normals,
-        colours=np.tile(GREEN, (len(part.colours), 1)),
+        colours=np.tile(GREEN_COLOUR, (len(part.colours), 1)),
         shine=0.0,
     )
 

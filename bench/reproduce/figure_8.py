@@ -23,7 +23,7 @@ from risorius.app.scenes import Scene, build_scene
 from risorius.geometry.arrays import Flags
 from risorius.geometry.directions import unit_vectors
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, parts_without_hair
+from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
@@ -50,7 +50,7 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     }
     camera = camera_for(scene, "-30,-5,4.6")
     camera.pan(0.12, 0.05)
-    wire_style = replace(FLAT, wireframe=True, wire_opacity=0.55)
+    wire_style = replace(FLAT_STYLE, wireframe=True, wire_opacity=0.55)
     wire = Drawing(camera, wire_style, parts_without_hair(scene), scene.bone_transforms())
     red = (0.85, 0.1, 0.1)
     along = render.Lines(lines_along(scene), red, width=2.0, hidden_opacity=0.0)
@@ -60,7 +60,7 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
             for title, refiner, drawing in (
                 (str(before), static, wire),
                 (str(after), refined, wire),
-                ("where folds run", static, replace(wire, style=GOURAUD, lines=along)),
+                ("where folds run", static, replace(wire, style=GOURAUD_STYLE, lines=along)),
             )
         ]
     return Outcome(values, image_table([("the face, disgusted", cells)]))

@@ -17,14 +17,14 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.pictures import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
-from risorius.assets.sheets import CELL_SIZE, COLUMN_COUNT, ROW_COUNT, make_grid
+from risorius.assets.sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
 from risorius.geometry.arrays import Floats64
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
+from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table
 from .experiments import Outcome
 from .figure_10 import Variant
 
-BACKGROUND = 250.0  # grey level: almost white, lighter than any part of the plane
+BACKGROUND_GREY = 250.0  # grey level: almost white, lighter than any part of the plane
 
 
 def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
@@ -35,7 +35,7 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
     """
     means = {}
     rows = []
-    shadings = (("flat", FLAT), ("Gouraud", GOURAUD))
+    shadings = (("flat", FLAT_STYLE), ("Gouraud", GOURAUD_STYLE))
     variants = (
         Variant("static", "none"),
         Variant("refined", "kahler"),
@@ -58,7 +58,7 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
                     cells.append((text, image))
                     levels.append(off)
                 means[shading, variant.title] = float(np.mean(levels))
-                if style is not FLAT or "normals" not in variant.options:
+                if style is not FLAT_STYLE or "normals" not in variant.options:
                     rows.append((f"{variant.title}, {shading} shading", cells))
         rows.append(("the sine itself", [("", truth) for truth in true]))
     values = {}
@@ -79,7 +79,9 @@ class Waving:
         self._camera = camera_for(self._scene, view)
         # Cells of the true sine per cell of the plane in each direction: smaller than pixels.
         fineness = 24
-        self._dense = make_grid(COLUMN_COUNT * fineness, ROW_COUNT * fineness, CELL_SIZE / fineness)
+        self._dense = make_grid(
+            SHEET_COLUMNS * fineness, SHEET_ROWS * fineness, CELL_SIZE / fineness
+        )
 
     def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
         """The picture of a variant, and the number of its triangles."""
@@ -94,7 +96,7 @@ class Waving:
         """The picture of the true sine; with such small triangles, all shadings look the same."""
         vertices, faces = self._dense
         positions, normals = self._wave(phase).waved(vertices)
-        drawing = Drawing(self._camera, GOURAUD)
+        drawing = Drawing(self._camera, GOURAUD_STYLE)
         return self._canvas.draw_surface(positions, normals, faces, drawing)
 
     def _wave(self, phase: float) -> PlaneScene:
@@ -108,14 +110,14 @@ def grey_level_difference(image: Image, truth: Image) -> float:
     """Root mean square difference in grey levels (0 .. 255), where both show the surface."""
     grey = _grey(image)
     true_grey = _grey(truth)
-    both = np.maximum(grey, true_grey) < BACKGROUND
+    both = np.maximum(grey, true_grey) < BACKGROUND_GREY
     return float(np.sqrt(np.mean((grey - true_grey)[both] ** 2)))
 
 
 def outline_difference(image: Image, truth: Image) -> float:
     """Number of pixels that only one picture covers, relative to the true surface's pixels."""
-    shows = _grey(image) < BACKGROUND
-    true_shows = _grey(truth) < BACKGROUND
+    shows = _grey(image) < BACKGROUND_GREY
+    true_shows = _grey(truth) < BACKGROUND_GREY
     return float((shows != true_shows).sum() / true_shows.sum())
 
 

@@ -30,18 +30,20 @@ from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.geometry.arrays import Floats64
 
-from ..canvas import GOURAUD, Canvas, Drawing
+from ..canvas import GOURAUD_STYLE, Canvas, Drawing
 from ..refine import interleaved
 from ..report import table
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
 
-SIZE = (1280, 720)  # [pixels] of the picture
-SMALL_SIZE = (64, 36)  # so few pixels take almost no time
-DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
-REFINING = "refinement alone"
-STAGES = (DRAWN, DRAWN_SMALL, REFINING)
+PICTURE_SIZE = (1280, 720)  # [pixels] of the picture
+SMALL_PICTURE_SIZE = (64, 36)  # so few pixels take almost no time
+DRAWN_STAGE, SMALL_STAGE = (
+    f"all of it, {width}x{height}" for width, height in (PICTURE_SIZE, SMALL_PICTURE_SIZE)
+)
+REFINING_STAGE = "refinement alone"
+TIMED_STAGES = (DRAWN_STAGE, SMALL_STAGE, REFINING_STAGE)
 """The timed stages, from most to least."""
 
 
@@ -68,7 +70,7 @@ class Row:
         return cls(title, static, dynamic, still, refined, ratio, (low, high))
 
 
-PAPER = {
+PAPERS_ROWS = {
     "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, 1.75),
     "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, 2.58),
 }
@@ -80,7 +82,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     options = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
     dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **options)
     positions, count = _fullest_frame(scene, dynamic)
-    drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
+    drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD_STYLE)
 
     def draw(canvas: Canvas, refiner: refine.Refiner) -> None:
         canvas.draw(refiner, positions, drawing)
@@ -90,14 +92,16 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         return interleaved([partial(work, static), partial(work, dynamic)], rounds)
 
     seconds = {}
-    for stage, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
+    for stage, size in ((DRAWN_STAGE, PICTURE_SIZE), (SMALL_STAGE, SMALL_PICTURE_SIZE)):
         with Canvas(size) as canvas:
             seconds[stage] = timed(partial(draw, canvas), rounds)
     quick_rounds = 10  # rounds without drawing, per round with drawing
-    seconds[REFINING] = timed(lambda refiner: refiner.refine(positions), quick_rounds * rounds)
+    seconds[REFINING_STAGE] = timed(
+        lambda refiner: refiner.refine(positions), quick_rounds * rounds
+    )
     return [
         Row.from_seconds(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
-        for stage in STAGES
+        for stage in TIMED_STAGES
     ]
 
 
@@ -120,7 +124,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
 
 def outcome(*, rounds: int) -> Outcome:
     """Measure our rows for the face and the plane, and print them beside the paper's."""
-    with Canvas(SMALL_SIZE) as canvas:
+    with Canvas(SMALL_PICTURE_SIZE) as canvas:
         renderer = canvas.surface.gl.info["GL_RENDERER"]
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
     measured = {scene.name: _measured(scene, rounds) for scene in scenes}
@@ -135,7 +139,7 @@ def outcome(*, rounds: int) -> Outcome:
             *(row.ratio, *row.quartiles),
         )
         for name, ours in measured.items()
-        for row in (PAPER[name], *ours)
+        for row in (PAPERS_ROWS[name], *ours)
     ]
     columns = ":<26|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f|25 %:6.2f|75 %:6.2f"
     lines = [

@@ -16,7 +16,7 @@ from risorius.app.capture import CaptureOptions
 from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene, Scene
 
-LAYERS = {  # file -> the layer, and a number of columns that fills the last row
+LAYER_PICTURES = {  # file -> the layer, and a number of columns that fills the last row
     "action_units": ("Action units", 4),
     "expressions": ("Expressions", 4),
     "visemes": ("Visemes", 5),
@@ -70,4 +70,6 @@ def layer(title: str, columns: int, size: tuple[int, int] = (150, 168)) -> Image
 
 
 if __name__ == "__main__":
-    figures.run(__doc__, {file: partial(layer, *layer_of) for file, layer_of in LAYERS.items()})
+    figures.run(
+        __doc__, {file: partial(layer, *layer_of) for file, layer_of in LAYER_PICTURES.items()}
+    )

@@ -26,7 +26,7 @@ from risorius.app.scenes import Scene
 from risorius.app.stopping import handle_signals
 
 Figure = Callable[[], Image]
-FOLDER = Path("docs/pictures")
+PICTURE_FOLDER = Path("docs/pictures")
 
 
 def shoot(
@@ -79,7 +79,7 @@ def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
 def run(about: str | None, figures: Mapping[str, Figure]) -> None:
     """Draw the figures of the command line; mistakes give one line, and signals end the program."""
     parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
-    parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
+    parser.add_argument("folder", nargs="?", type=Path, default=PICTURE_FOLDER)
     parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="only these figures")
     given = parser.parse_args()
     handle_signals()
@@ -94,4 +94,4 @@ if __name__ == "__main__":
     handle_signals()
     with report_user_errors():
         opened = {Path(file).stem: PIL.Image.open(file).convert("RGB") for file in sys.argv[1:]}
-        draw(FOLDER, {name: partial(np.asarray, image) for name, image in opened.items()})
+        draw(PICTURE_FOLDER, {name: partial(np.asarray, image) for name, image in opened.items()})

@@ -17,11 +17,11 @@ from risorius import render
 from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import CaptureOptions
 from risorius.app.pictures import Image
-from risorius.app.refining.presets import PAPERS_PRESET, STATIC, Refinement
+from risorius.app.refining.presets import PAPERS_PRESET, STATIC_REFINER, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
-CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
+CELL_SIZE = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
 
 
 def system() -> Image:
@@ -30,7 +30,7 @@ def system() -> Image:
     splits = replace(mesh, colour_by=render.ColourBy.SPLITS)
     steps: dict[str, dict[str, Any]] = {
         "muscles pull": {"anatomy": AnatomyView(("muscles", "skull"), 0.1)},
-        "on 2030 triangles": {"refinement": Refinement(refiner=STATIC), "style": mesh},
+        "on 2030 triangles": {"refinement": Refinement(refiner=STATIC_REFINER), "style": mesh},
         "split where they bend": {"refinement": Refinement(PAPERS_PRESET), "style": splits},
         "and drawn as skin": {},
     }
@@ -54,8 +54,8 @@ def head_views() -> Image:
     }
     for title, style in styles.items():
         for view in views:
-            look = Refinement(refiner=STATIC if title == "flat" else None)
-            options = CaptureOptions(CELL, refinement=look, style=style, camera=view)
+            look = Refinement(refiner=STATIC_REFINER if title == "flat" else None)
+            options = CaptureOptions(CELL_SIZE, refinement=look, style=style, camera=view)
             cells.append((f"{view}, {title}", figures.shoot(scene, {}, options)))
     return figures.sheet(cells, len(views))
 
@@ -95,7 +95,7 @@ def persons() -> Image:
     )
     for seed, pose, light, view in (*front, *in_light):
         style = render.Style(light=render.LIGHTS[light])
-        options = CaptureOptions(size=CELL, camera=view, style=style)
+        options = CaptureOptions(size=CELL_SIZE, camera=view, style=style)
         name = f"{seed}: {pose}, {light}" if pose else str(seed)
         person = FaceScene(person_called(seed))
         cells.append((name, figures.shoot(person, {pose: 1.0} if pose else {}, options)))

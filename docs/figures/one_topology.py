@@ -10,7 +10,7 @@ from __future__ import annotations
 import figures
 import numpy as np
 import numpy.typing as npt
-from refinement import INK, NEW_COLOUR, PAPER, SECOND_COLOUR, Colour, Diagram
+from refinement import INK_COLOUR, NEW_COLOUR, PAPER_COLOUR, SECOND_COLOUR, Colour, Diagram
 
 from risorius import assets, refine, sim
 from risorius.app.pictures import Image
@@ -20,9 +20,9 @@ from risorius.geometry.directions import unit_vectors
 
 Points = npt.NDArray[np.float64]
 
-LIGHT = np.array([-0.35, 0.45, 0.82])
-PANEL = (420, 480)
-CAPTION = 24  # pixels below the panels
+LIGHT_DIRECTION = np.array([-0.35, 0.45, 0.82])
+PANEL_SIZE = (420, 480)
+CAPTION_HEIGHT = 24  # pixels below the panels
 
 
 def shaded(colour: Colour, light: float) -> Colour:
@@ -33,8 +33,8 @@ def shaded(colour: Colour, light: float) -> Colour:
 
 def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float) -> Points:
     """Draw the triangles that face the reader; return the places of all vertices, (N, 2)."""
-    width, height = PANEL
-    centre = np.array([left + width / 2.0, CAPTION + height / 2.0])
+    width, height = PANEL_SIZE
+    centre = np.array([left + width / 2.0, CAPTION_HEIGHT + height / 2.0])
     pixels = 2.45  # pixels per millimetre
     middle = (0.0, -22.0)  # point of the face [mm] in the middle of a panel
     places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
@@ -53,12 +53,12 @@ def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left
             continue
         outline = places[mesh.triangles[k]]
         fill = split if is_split[mesh.source[k]] else whole
-        light = max(float(normals[k] @ LIGHT), 0.0)
+        light = max(float(normals[k] @ LIGHT_DIRECTION), 0.0)
         diagram.polygon(list(outline), shaded(fill, light))
         diagram.line([*outline, outline[0]], edge, 0.5)
     right = left + width
-    strip = [(left, 0), (right, 0), (right, CAPTION), (left, CAPTION)]
-    diagram.polygon(strip, PAPER)
+    strip = [(left, 0), (right, 0), (right, CAPTION_HEIGHT), (left, CAPTION_HEIGHT)]
+    diagram.polygon(strip, PAPER_COLOUR)
     return places
 
 
@@ -75,18 +75,18 @@ def one_topology() -> Image:
     splits = refine.splits_of_clip(free, frames)
     refiner = refine.create("kahler", head.faces, head.vertices, splits=splits)
     is_split: Flags = np.any(splits[refiner.triangle_edges], axis=1)
-    diagram = Diagram(2 * PANEL[0], PANEL[1] + CAPTION)
+    diagram = Diagram(2 * PANEL_SIZE[0], PANEL_SIZE[1] + CAPTION_HEIGHT)
     for panel, (expression, frame) in enumerate(zip(expressions, frames, strict=True)):
         mesh = refiner.refine(frame)
-        left = panel * PANEL[0]
+        left = panel * PANEL_SIZE[0]
         places = draw_frame(diagram, mesh, is_split, left)
         if panel == 0:
             marked = numbered(mesh, refiner.vertex_capacity)
         for vertex in marked:
             diagram.disc(places[vertex], SECOND_COLOUR, 3.2)
-            diagram.text(places[vertex] + [0.0, 11.0], str(vertex), INK, 12.0)
+            diagram.text(places[vertex] + [0.0, 11.0], str(vertex), INK_COLOUR, 12.0)
         words = f"{expression}: {mesh.vertex_count} vertices, {mesh.triangle_count} triangles"
-        diagram.text((left + PANEL[0] / 2.0, CAPTION / 2.0), words, NEW_COLOUR, 13.0)
+        diagram.text((left + PANEL_SIZE[0] / 2.0, CAPTION_HEIGHT / 2.0), words, NEW_COLOUR, 13.0)
     return diagram.image()
 
 

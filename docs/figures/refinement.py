@@ -24,8 +24,8 @@ from risorius.refine.kahler.table import POINT_COORDINATES, splits_of, subdivide
 
 Points = npt.NDArray[np.float64]
 
-PAPER = (255, 255, 255)
-INK = (32, 34, 40)
+PAPER_COLOUR = (255, 255, 255)
+INK_COLOUR = (32, 34, 40)
 FILL_COLOUR = (236, 240, 245)
 NEW_COLOUR = (0, 114, 178)
 SECOND_COLOUR = (213, 94, 0)
@@ -43,14 +43,16 @@ class Diagram:
 
     def __init__(self, width: int, height: int) -> None:
         self.size = (width, height)
-        self._image = PIL.Image.new("RGB", (width * self.SCALE, height * self.SCALE), PAPER)
+        self._image = PIL.Image.new("RGB", (width * self.SCALE, height * self.SCALE), PAPER_COLOUR)
         self._draw = ImageDraw.Draw(self._image)
 
     def image(self) -> Image:
         """The finished picture, shape (height, width, 3)."""
         return np.asarray(self._image.resize(self.size, PIL.Image.Resampling.LANCZOS))
 
-    def line(self, points: Sequence[Place], colour: Colour = INK, width: float = 1.2) -> None:
+    def line(
+        self, points: Sequence[Place], colour: Colour = INK_COLOUR, width: float = 1.2
+    ) -> None:
         """A polyline; its width in pixels."""
         places = [self._place(point) for point in points]
         self._draw.line(places, fill=colour, width=round(width * self.SCALE), joint="curve")
@@ -65,7 +67,9 @@ class Diagram:
         reach = radius * self.SCALE
         self._draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=colour)
 
-    def text(self, point: Place, text: str, colour: Colour = INK, size: float = 12.0) -> None:
+    def text(
+        self, point: Place, text: str, colour: Colour = INK_COLOUR, size: float = 12.0
+    ) -> None:
         """Text around a point."""
         self._draw.text(self._place(point), text, colour, font(size * self.SCALE), "mm")
 
@@ -130,7 +134,7 @@ def lookup() -> Image:
     diagram.line([*corners, corners[0]])
     centre = corners.mean(axis=0)
     for number, point in enumerate(points):
-        colour = INK if number < 3 else NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
+        colour = INK_COLOUR if number < 3 else NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
         diagram.disc(point, colour)
         outward = point - centre
         diagram.text(point + 13 * outward / np.linalg.norm(outward), str(number), colour, 12)

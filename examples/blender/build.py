@@ -31,7 +31,7 @@ class Blender(NamedTuple):
     """The first later version that the .zip does not support."""
 
 
-BLENDERS = {
+BLENDER_VERSIONS = {
     "5.0": Blender("3.11", "numpy==1.26.4", "5.0.0", "5.1.0"),
     "5.2": Blender("3.13", "numpy==2.3.*", "5.2.0", "5.3.0"),
 }
@@ -63,7 +63,7 @@ def collect_wheels(blender: Blender, platform: str, folder: Path) -> list[Path]:
 
 def main(version: str, platform: str, target: Path) -> Path:
     """Write the .zip; its manifest names the wheels, the platform and the version of Blender."""
-    blender = BLENDERS[version]
+    blender = BLENDER_VERSIONS[version]
     add_on = Path(__file__).parent / "risorius_refine"
     manifest = (add_on / "blender_manifest.toml").read_text(encoding="utf-8")
     about = tomllib.loads(manifest)
@@ -91,7 +91,7 @@ def main(version: str, platform: str, target: Path) -> Path:
 if __name__ == "__main__":
     command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     command.add_argument("platform", nargs="?", choices=WHEELS_FOR, default="linux-x64")
-    command.add_argument("--blender", choices=BLENDERS, default="5.2")
+    command.add_argument("--blender", choices=BLENDER_VERSIONS, default="5.2")
     command.add_argument("folder", nargs="?", type=Path, default=Path("."))
     given = command.parse_args()
     print(main(given.blender, given.platform, given.folder))

@@ -54,7 +54,7 @@ from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
 from ..kahler.scheme import Scheme
 from ..kahler.smoothing import geomorph_of_split
 from ..kahler.table import (
-    CENTRE,
+    CENTRE_POINT,
     CONFIGURATION_COUNT,
     Triangle,
     outline,
@@ -68,8 +68,8 @@ from ..mesh.vectors import (
     HALF,
     ONE,
     QUARTER,
+    ROW_WIDTH,
     THIRD,
-    WIDTH,
     ZERO,
     Vector,
     less,
@@ -95,17 +95,19 @@ def fan(splits: tuple[int, int, int]) -> list[Triangle]:
         return subdivide(splits)
     points = outline(splits)
     pairs = zip(points, points[1:] + points[:1], strict=True)
-    return [(CENTRE, start, end) for start, end in pairs]
+    return [(CENTRE_POINT, start, end) for start, end in pairs]
 
 
-FANS = table_of([fan(splits_of(configuration)) for configuration in range(CONFIGURATION_COUNT)])
+FAN_TABLE = table_of(
+    [fan(splits_of(configuration)) for configuration in range(CONFIGURATION_COUNT)]
+)
 """The patterns of blended frames."""
 
 
 class Blended(Cutting):
     """The cutting of blended frames: points leave their edges gradually, triangles are fans."""
 
-    patterns = FANS
+    patterns = FAN_TABLE
     has_centres = True
 
     def bind(self, connectivity: Connectivity, frame: FrameBuffers) -> Unsigned16:
@@ -166,7 +168,7 @@ def number_centres(
     for t in range(configurations.shape[0] - 1):
         row = configurations[t]
         centre_triangles[centre_count] = t
-        centre_count += subtriangles[row, 0, 0] == CENTRE
+        centre_count += subtriangles[row, 0, 0] == CENTRE_POINT
         triangle_count += int(subtriangle_counts[row])
     counts[TRIANGLES] = triangle_count
     counts[CENTRES] = centre_count
@@ -233,7 +235,7 @@ def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers
     faces = mesh.faces
     triangle_edges = mesh.triangle_edges
     centre_weights = frame.centre_weights
-    assert faces.shape[1] == triangle_edges.shape[1] == centre_weights.shape[1] == WIDTH
+    assert faces.shape[1] == triangle_edges.shape[1] == centre_weights.shape[1] == ROW_WIDTH
     for k in range(first, last):
         t = frame.centre_triangles[k]
         row = np.uint32(first_row + k)

@@ -1,8 +1,8 @@
 r"""Cubic edges from end points and normals: the scheme named `cubic`.
 
 The border curves of curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001): the tangents of a
-cubic from a to b are normal to the vertex normals at its ends. With d = b - a, and heights h_a = d
-. n_a, h_b = d . n_b over these planes:
+cubic from a to b are perpendicular to the vertex normals at its ends. With d = b - a, and heights
+h_a = d . n_a and h_b = d . n_b:
 
     middle         (a + b) / 2    -  ( h_a n_a -     h_b n_b) /  8
     near a      (3 a + b) / 4     -  (9 h_a n_a - 3 h_b n_b) / 64
@@ -24,9 +24,8 @@ of split edges are moved by the displacement times their geomorph weight (blendi
               n           n              n at a =  (3 a + b) / 4        +  displacement
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
-The normal at m is the mean of the normals at a and b; the normal at n is the mean of the normals of
-its neighbours, as in the paper (section 4.4). surface_normals.py computes normals of the refined
-surface instead.
+The normal at m or n is the mean of the normals of its neighbours, as in the paper (section 4.4).
+surface_normals.py computes normals of the refined surface instead.
 """
 
 from collections.abc import Sequence
@@ -36,7 +35,7 @@ import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned32
 from ...jit import njit
-from ..kahler.frame import ONCE, FrameBuffers
+from ..kahler.frame import SPLIT_EDGES, FrameBuffers
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..kahler.scheme import Scheme
 from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
@@ -49,9 +48,9 @@ from ..mesh.vectors import (
     HALF,
     ONE,
     QUARTER,
+    ROW_WIDTH,
+    SMALLEST_FLOAT,
     THREE_QUARTERS,
-    TINY,
-    WIDTH,
     ZERO,
     Rows,
     Vector,
@@ -68,11 +67,11 @@ from ..mesh.vectors import (
     write_row,
 )
 
-NEAR_START = 0
-MIDDLE = 1
-NEAR_END = 2
+START_POINT = 0
+MIDDLE_POINT = 1
+END_POINT = 2
 """Points of an edge in an array of displacements, shape (E, 3, 3): edge, point, x y z."""
-FULLNESS = np.float32(1.2)
+FULLNESS_FACTOR = np.float32(1.2)
 """Factor on the cubic displacement of inner edges. Triangles between curves are flat, so the best
 fit lies a little outside the curves. Measured on ellipsoids, a torus and heads, where 1.1 to 1.25
 are almost equally good.
@@ -83,7 +82,7 @@ mean, and the subtraction is a first step to undo this. A second or a larger ste
 noise of decimated meshes. Measured on two faces and their decimations: half a percentage point of
 35 better on scans, equal on smooth heads, half a point worse on the roughest and on a torus.
 """
-EIGHTH = np.float32(1 / 8)
+MIDDLE_WEIGHT = np.float32(1 / 8)
 """Weight of the end tangents in the middle of a cubic."""
 NEAR_WEIGHT = np.float32(9 / 64)
 FAR_WEIGHT = np.float32(3 / 64)
@@ -161,12 +160,12 @@ class CubicScheme(Scheme):
     def place(self, frame: FrameBuffers) -> None:
         """Write unchanged vertices, and the points of split edges on their curves."""
         self.place_positions(frame)
-        count = len(frame.points) + int(frame.counts[ONCE])
+        count = len(frame.points) + int(frame.counts[SPLIT_EDGES])
         parallel_for(place_mean_normals, count, self._around.points, frame, self._normals)
 
     def place_positions(self, frame: FrameBuffers) -> None:
         """Write positions only, as `place` does."""
-        count = len(frame.points) + int(frame.counts[ONCE])
+        count = len(frame.points) + int(frame.counts[SPLIT_EDGES])
         parallel_for(place_on_curves, count, self._around.points, frame, self._rows)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
@@ -237,7 +236,7 @@ def weighted_normals(
 
     starts, corners: the corners of triangles at each vertex, as in mesh/fans.py.
     """
-    assert weights.shape[1] == crosses.shape[1] == normals.shape[1] == WIDTH
+    assert weights.shape[1] == crosses.shape[1] == normals.shape[1] == ROW_WIDTH
     for k in range(first, last):
         v = np.uint32(k)
         total = ZERO, ZERO, ZERO
@@ -260,7 +259,7 @@ def steepen_normals(
     off: Floats32,
 ) -> None:
     """Write unit normals minus `off` times the sum around them, normalised, shape (V, 3)."""
-    assert normals.shape[1] == steeper.shape[1] == WIDTH
+    assert normals.shape[1] == steeper.shape[1] == ROW_WIDTH
     for k in range(first, last):
         v = np.uint32(k)
         total = ZERO, ZERO, ZERO
@@ -284,9 +283,10 @@ def write_cubic(displacements: Floats32, first: np.uint32, turn_a: Vector, turn_
     """
     near_a = less(times(NEAR_WEIGHT, turn_a), FAR_WEIGHT, turn_b)
     near_b = less(times(FAR_WEIGHT, turn_a), NEAR_WEIGHT, turn_b)
-    write_row(displacements, np.uint32(first + NEAR_START), near_a)
-    write_row(displacements, np.uint32(first + MIDDLE), times(EIGHTH, less(turn_a, ONE, turn_b)))
-    write_row(displacements, np.uint32(first + NEAR_END), near_b)
+    write_row(displacements, np.uint32(first + START_POINT), near_a)
+    middle = times(MIDDLE_WEIGHT, less(turn_a, ONE, turn_b))
+    write_row(displacements, np.uint32(first + MIDDLE_POINT), middle)
+    write_row(displacements, np.uint32(first + END_POINT), near_b)
 
 
 @njit
@@ -306,7 +306,7 @@ def displace_cubic(
     is_interior = around.is_interior
     steeper = tangents.steeper
     ends = tangents.ends
-    assert positions.shape[1] == steeper.shape[1] == displacements.shape[1] == WIDTH
+    assert positions.shape[1] == steeper.shape[1] == displacements.shape[1] == ROW_WIDTH
     for k in range(first, last):
         e = np.uint32(k)
         a = points[e, 0]
@@ -315,14 +315,14 @@ def displace_cubic(
         if is_interior[e]:
             at_a = row_of(steeper, np.uint32(ends[e, 0]))
             at_b = row_of(steeper, np.uint32(ends[e, 1]))
-            turn_a = times(-FULLNESS * dot(d, at_a), at_a)
-            turn_b = times(-FULLNESS * dot(d, at_b), at_b)
+            turn_a = times(-FULLNESS_FACTOR * dot(d, at_a), at_a)
+            turn_b = times(-FULLNESS_FACTOR * dot(d, at_b), at_b)
         else:
             p = tangents.beyond[e, 0]
             q = tangents.beyond[e, 1]
             length = length_of(d)
-            weight_a = length / max(length + length_of(between(positions, p, a)), TINY)
-            weight_b = length / max(length + length_of(between(positions, b, q)), TINY)
+            weight_a = length / max(length + length_of(between(positions, p, a)), SMALLEST_FLOAT)
+            weight_b = length / max(length + length_of(between(positions, b, q)), SMALLEST_FLOAT)
             turn_a = less(times(weight_a, between(positions, p, b)), ONE, d)
             turn_b = less(times(weight_b, between(positions, a, q)), ONE, d)
             if p == a:
@@ -336,7 +336,7 @@ def displace_cubic(
 def displacement_sizes(displacements: Floats32, sizes: Floats32) -> None:
     """Write how far the midpoint of every edge is displaced, shape (E,)."""
     for e in range(sizes.shape[0]):
-        middle = row_of(displacements[e], MIDDLE)
+        middle = row_of(displacements[e], MIDDLE_POINT)
         sizes[e] = np.sqrt(dot(middle, middle))
 
 
@@ -355,7 +355,7 @@ def place_on_curves(
     first_points = frame.first_points
     split_once = frame.split_once
     geomorph_once = frame.geomorph_once
-    assert points.shape[1] == displacements.shape[1] == WIDTH
+    assert points.shape[1] == displacements.shape[1] == ROW_WIDTH
     vertex_count = points.shape[0]
     for v in range(first, min(last, vertex_count)):
         write_row(rows, np.uint32(v), row_of(points, np.uint32(v)))
@@ -364,14 +364,14 @@ def place_on_curves(
         row = np.uint32(first_points[e] + (splits[e] >> 1))
         at_a = row_of(points, ends[e, 0])
         at_b = row_of(points, ends[e, 1])
-        out = times(geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE)))
+        out = times(geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE_POINT)))
         middle = plus(times(HALF, plus(at_a, at_b)), out)
         write_row(rows, row, middle)
         if splits[e] == 2:
             full_a = plus(times(THREE_QUARTERS, at_a), times(QUARTER, at_b))
             full_b = plus(times(THREE_QUARTERS, at_b), times(QUARTER, at_a))
-            full_a = plus(full_a, row_of(displacements, np.uint32(3 * e + NEAR_START)))
-            full_b = plus(full_b, row_of(displacements, np.uint32(3 * e + NEAR_END)))
+            full_a = plus(full_a, row_of(displacements, np.uint32(3 * e + START_POINT)))
+            full_b = plus(full_b, row_of(displacements, np.uint32(3 * e + END_POINT)))
             straight_a = times(HALF, plus(at_a, middle))
             straight_b = times(HALF, plus(at_b, middle))
             geomorph = frame.geomorph_twice[e]

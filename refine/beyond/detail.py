@@ -33,8 +33,19 @@ from ...jit import njit
 from ..kahler.frame import FrameBuffers
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.validation import checked_mesh
-from ..mesh.vectors import TINY, Vector, between, cross, dot, less, plus, row_of, unit, write_row
-from .cubic import FULLNESS, MIDDLE, NEAR_END, NEAR_START, CubicScheme
+from ..mesh.vectors import (
+    SMALLEST_FLOAT,
+    Vector,
+    between,
+    cross,
+    dot,
+    less,
+    plus,
+    row_of,
+    unit,
+    write_row,
+)
+from .cubic import END_POINT, FULLNESS_FACTOR, MIDDLE_POINT, START_POINT, CubicScheme
 from .measuring import mean_length
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
@@ -90,7 +101,7 @@ class DetailScheme(CubicScheme):
         away = WRONG_SIDE_DISTANCE * float(mean_length(connectivity, rest_positions))
         found = closest_points(points.reshape(-1, 3), *self._finer, directions.reshape(-1, 3), away)
         closest = found.interpolate(self._finer[0]).reshape(points.shape)
-        missing = straight + float(FULLNESS) * (closest - straight) - points
+        missing = straight + float(FULLNESS_FACTOR) * (closest - straight) - points
         axes = self._axes.astype(np.float64)
         self._offsets = np.einsum("epij,epj->epi", axes, missing).astype(np.float32)
 
@@ -98,14 +109,14 @@ class DetailScheme(CubicScheme):
         """Compute the displacements of the points on all edges, with detail only at midpoints."""
         super().prepare(frame)
         middle_axes(self._around, frame.positions, self._normals, self._axes)
-        self._add(self._every_edge, MIDDLE)
+        self._add(self._every_edge, MIDDLE_POINT)
 
     def place_positions(self, frame: FrameBuffers) -> None:
         """Write points with their detail; call it once per `prepare` if edges are split twice."""
         twice = frame.twice_split_edges
         quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
-        self._add(twice, NEAR_START)
-        self._add(twice, NEAR_END)
+        self._add(twice, START_POINT)
+        self._add(twice, END_POINT)
         super().place_positions(frame)
 
     def _add(self, edges: Unsigned32, point: int) -> None:
@@ -153,8 +164,8 @@ def middle_axes(
         b = around.points[e, 1]
         along = between(positions, a, b)
         mean = plus(row_of(normals, a), row_of(normals, b))
-        up = unit(less(mean, dot(along, mean) / max(dot(along, along), TINY), along))
-        write_axes(up, along, axes[e, MIDDLE])
+        up = unit(less(mean, dot(along, mean) / max(dot(along, along), SMALLEST_FLOAT), along))
+        write_axes(up, along, axes[e, MIDDLE_POINT])
 
 
 @njit
@@ -170,7 +181,7 @@ def quarter_axes(
     for e in edges:
         a = around.points[e, 0]
         b = around.points[e, 1]
-        up = row_of(axes[e, MIDDLE], 0)
+        up = row_of(axes[e, MIDDLE_POINT], 0)
         along = between(positions, a, b)
-        write_axes(plus(up, row_of(normals, a)), along, axes[e, NEAR_START])
-        write_axes(plus(up, row_of(normals, b)), along, axes[e, NEAR_END])
+        write_axes(plus(up, row_of(normals, a)), along, axes[e, START_POINT])
+        write_axes(plus(up, row_of(normals, b)), along, axes[e, END_POINT])

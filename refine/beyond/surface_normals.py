@@ -28,7 +28,7 @@ import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
 from ...jit import njit
-from ..kahler.frame import ONCE, ROWS, FrameBuffers
+from ..kahler.frame import ROWS, SPLIT_EDGES, FrameBuffers
 from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import sharpened
@@ -89,7 +89,7 @@ class RefinedNormals(Scheme):
         """Write points at the positions of the scheme, with the normals of its surface."""
         self._surface.find_normals_of_edges(frame.split_edges)
         self._scheme.place_positions(frame)
-        count = len(frame.points) + int(frame.counts[ONCE])
+        count = len(frame.points) + int(frame.counts[SPLIT_EDGES])
         parallel_for(turn_normals, count, self._mesh.around.points, frame, self._surface.normals)
 
     def place_centres(self, frame: FrameBuffers) -> None:

@@ -17,8 +17,8 @@ from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
     ONE,
+    ROW_WIDTH,
     THIRD,
-    WIDTH,
     ZERO,
     Number,
     Vector,
@@ -157,7 +157,11 @@ def cross_corners(
     of edge points, shape (V + E, 6); `edge_points`: rows of edge points, (E, 6).
     """
     assert (
-        faces.shape[1] == triangle_edges.shape[1] == centres.shape[1] == corners.shape[1] == WIDTH
+        faces.shape[1]
+        == triangle_edges.shape[1]
+        == centres.shape[1]
+        == corners.shape[1]
+        == ROW_WIDTH
     )
     for k in range(first, last):
         t = np.uint32(k)
@@ -197,7 +201,7 @@ def sum_corners(
     `starts`, `around`: the corners at each vertex (mesh/fans.py). `corners`: their summands, shape
     (3 F, 3).
     """
-    assert corners.shape[1] == normals.shape[1] == WIDTH
+    assert corners.shape[1] == normals.shape[1] == ROW_WIDTH
     for k in range(first, last):
         v = np.uint32(k)
         total = ZERO, ZERO, ZERO
@@ -271,7 +275,7 @@ def measure_edges(
     times the length of the edge, (E,) each. `means`: scratch, at least (E, 3).
     """
     points, edge_sides, is_interior, rows, centres, normals = of_edges
-    assert centres.shape[1] == normals.shape[1] == means.shape[1] == WIDTH
+    assert centres.shape[1] == normals.shape[1] == means.shape[1] == ROW_WIDTH
     vertex_count = np.uint32(normals.shape[0] - points.shape[0])
     for k in range(first, last):
         e = np.uint32(k)
@@ -305,7 +309,7 @@ def finish_measures(
 
     `normals`, `means`: unit vectors, shape (N, 3).
     """
-    assert normals.shape[1] == means.shape[1] == WIDTH
+    assert normals.shape[1] == means.shape[1] == ROW_WIDTH
     for k in range(turns.shape[0]):
         # The chord of the angle: up to half a radian it differs from the angle by less than a
         # hundredth.

@@ -20,7 +20,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 import numpy as np
 
 Kind = Literal["number", "integer", "switch", "word", "choice", "object"]
-_KINDS: Mapping[type, Kind] = MappingProxyType(
+_KIND_OF_TYPE: Mapping[type, Kind] = MappingProxyType(
     {bool: "switch", int: "integer", float: "number", str: "word"}
 )
 LEFT_OPEN = "automatic"
@@ -108,7 +108,7 @@ def _option_of(parameter: inspect.Parameter) -> Option:
         declared = next((each for each in beside if isinstance(each, Option)), declared)
     default = parameter.default
     choices = _choices_of(annotation)
-    kind: Kind = "choice" if choices else _KINDS.get(type(default), "object")
+    kind: Kind = "choice" if choices else _KIND_OF_TYPE.get(type(default), "object")
     return replace(declared, name=parameter.name, default=default, kind=kind, choices=choices)
 
 

@@ -12,7 +12,7 @@ from ...geometry.arrays import Floats64
 from ..border.checker import BrokenMeshError
 from .embedding import EmbeddedPoints, checked_vectors
 
-TOLERANCE = 1e-6
+CHECK_TOLERANCE = 1e-6
 """Tolerance of points, relative to the size of the fine mesh and the length of its motion."""
 
 
@@ -55,7 +55,7 @@ def check_embedding(
         wanted = fine @ rotation.T + shift
         found = embedding.evaluate(rest @ rotation.T + shift).positions
         off = np.linalg.norm(np.asarray(found, dtype=np.float64) - wanted, axis=1)
-        allowed = TOLERANCE * max(size, float(np.abs(wanted).max(initial=0.0)))
+        allowed = CHECK_TOLERANCE * max(size, float(np.abs(wanted).max(initial=0.0)))
         bad = np.flatnonzero(~(off <= allowed))
         if len(bad) > 0:
             raise BrokenMeshError(

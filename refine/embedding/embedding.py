@@ -65,7 +65,7 @@ class Binding:
     places: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
 
 
-NEAREST = Binding()
+NEAREST_BINDING = Binding()
 """Each fine vertex is bound to the nearest triangle, whichever way it faces."""
 
 
@@ -90,7 +90,7 @@ class Embedding:
         rest_positions: npt.ArrayLike,
         points: npt.ArrayLike,
         *,
-        binding: Binding = NEAREST,
+        binding: Binding = NEAREST_BINDING,
         crease_angle: float | None = None,
         stretch_offsets: bool = False,
     ) -> None:

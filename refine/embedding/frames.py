@@ -25,7 +25,7 @@ FRAME_NUMBERS = 5
 """Count of the numbers of a frame: a quaternion and the stretch of the surface."""
 AXES_NUMBERS = 16
 """Count of the numbers of a sector's axes."""
-LEAST_SIDE = 0.1
+LEAST_SIDE_RATIO = 0.1
 """Least length of a sector's summed cross products, relative to the sum of their lengths: below it
 the sector has no direction.
 """
@@ -62,7 +62,7 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
         sums = np.linalg.norm(_sums(sectors.ravel(), vectors, count), axis=1)
         weighted_areas = (weight * areas[:, None]).reshape(-1, 1)
         sizes = _sums(sectors.ravel(), weighted_areas, count)[:, 0]
-        is_unsound |= sums < LEAST_SIDE * sizes
+        is_unsound |= sums < LEAST_SIDE_RATIO * sizes
     corners = np.flatnonzero(is_unsound[sectors])
     sectors.ravel()[corners] = count + np.arange(len(corners))
     return sectors

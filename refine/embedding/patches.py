@@ -46,7 +46,7 @@ c towards a and b; and the middle.
 """
 FRAME_COLUMN = 3 * CONTROL_POINT_COUNT
 """First column of the frames of a patch's corners; a frame is a quaternion and a stretch."""
-COLUMN_COUNT = FRAME_COLUMN + 3 * FRAME_NUMBERS
+FRAME_COLUMN_COUNT = FRAME_COLUMN + 3 * FRAME_NUMBERS
 """Count of the numbers of a patch."""
 MOST_CARRIED = 0.5
 """Largest difference between a carried tangent and the tangent of the current mesh, relative to the
@@ -104,7 +104,7 @@ class SmoothSurface:
         self._axes = axes.copy()
         self._frames = np.zeros((len(used), FRAME_NUMBERS))
         self._tangents = np.zeros((len(directed_edges), 3))
-        self.rows = np.zeros((len(triangles), COLUMN_COUNT))
+        self.rows = np.zeros((len(triangles), FRAME_COLUMN_COUNT))
         """Control points and frames of each patch, shape (T, 45)."""
         self.move(rest)
 

@@ -24,16 +24,16 @@ from .patches import SmoothSurface, place_on
 
 WRONG_SIDE = 10.0
 """Distance, in mean edge lengths, that is added for a triangle that faces the other way."""
-MOST_STEPS = 16
+MOST_NEWTON_STEPS = 16
 """Most steps of Newton's method; four are enough on most surfaces."""
 FARTHEST_RATIO = 1.25
 """Largest distance of a place, relative to the distance of the nearest place. Chosen: the place
 with the point on its normal is rarely the nearest place, but a place much farther away belongs to
 another part of the surface.
 """
-ROUNDING = 1e-14
+ROUNDING_LIMIT = 1e-14
 """Steps in barycentric coordinates, and squared sines of angles, below this count as zero."""
-INSIDE, STUCK = 3, 4
+INSIDE_RESULT, STUCK_RESULT = 3, 4
 """Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
 UPRIGHT_SINE = 1e-12
 """Largest part of the vector to the point across the normal, relative to its length."""
@@ -124,7 +124,7 @@ def slide(
         place[:] = weights[k]
         best[:] = place
         least = farthest = np.inf
-        for _ in range(MOST_STEPS):
+        for _ in range(MOST_NEWTON_STEPS):
             apart, aside = linearise(point, rows, normals, sectors, t, place, columns)
             size = dot(aside, aside)
             if farthest == np.inf:
@@ -136,9 +136,9 @@ def slide(
             if size <= (UPRIGHT_SINE * apart) ** 2:
                 break
             hit = advance(aside, columns, across, t, place)
-            if hit == STUCK:
+            if hit == STUCK_RESULT:
                 break
-            if hit != INSIDE:
+            if hit != INSIDE_RESULT:
                 t = cross_edge(across, t, hit, place)
         triangles[k] = best_t
         weights[k] = best
@@ -194,14 +194,14 @@ def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vecto
 def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place: Floats64) -> int:
     """Move a place on patch t by one step of Newton's method, up to the patch's edge.
 
-    Returns INSIDE, STUCK, or the corner opposite of the edge that must be crossed.
+    Returns INSIDE_RESULT, STUCK_RESULT, or the corner opposite of the edge that must be crossed.
     """
     step = newton_step(aside, columns)
     for m in range(3):
         if place[m] <= 0.0 and step[m] < 0.0 and across[t, (m + 1) % 3] < 0:
             step = step_along(aside, columns, (m + 1) % 3, (m + 2) % 3)
     fraction = 1.0
-    hit = INSIDE
+    hit = INSIDE_RESULT
     for m in range(3):
         if step[m] < 0.0 and place[m] + fraction * step[m] < 0.0:
             fraction = max(place[m], 0.0) / -step[m]
@@ -210,12 +210,12 @@ def advance(aside: Vector, columns: Floats64, across: Integers64, t: int, place:
     for m in range(3):
         place[m] += fraction * step[m]
         moved += fraction * abs(step[m])
-    if hit == INSIDE:
-        return INSIDE if moved > ROUNDING else STUCK
+    if hit == INSIDE_RESULT:
+        return INSIDE_RESULT if moved > ROUNDING_LIMIT else STUCK_RESULT
     place[hit] = 0.0
     if across[t, (hit + 1) % 3] >= 0:
         return hit
-    return INSIDE if moved > ROUNDING else STUCK
+    return INSIDE_RESULT if moved > ROUNDING_LIMIT else STUCK_RESULT
 
 
 @njit
@@ -227,7 +227,7 @@ def newton_step(aside: Vector, columns: Floats64) -> Vector:
     b = dot(first, second)
     c = dot(second, second)
     whole = a * c - b * b
-    if whole <= ROUNDING * a * c:
+    if whole <= ROUNDING_LIMIT * a * c:
         return 0.0, 0.0, 0.0
     along_first = dot(first, aside)
     along_second = dot(second, aside)

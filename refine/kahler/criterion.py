@@ -27,7 +27,7 @@ from ..border.option import Option
 from ..border.plugin import View
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_of
+from ..mesh.vectors import ONE, ROW_WIDTH, add_to_row, cross, difference, dot, row_of
 from .scheme import Scheme
 
 THRESHOLD_ONCE = 0.02
@@ -50,7 +50,7 @@ rounding.
 """
 
 
-INFINITE = np.float32(np.inf)
+INFINITE_THRESHOLD = np.float32(np.inf)
 Levels = Annotated[int, Option("most splits of an edge; 0: this criterion splits none", 0, 2)]
 DropOnce = Annotated[
     float,
@@ -164,8 +164,8 @@ class Thresholds:
     @property
     def limits(self) -> tuple[np.float32, np.float32]:
         """Both thresholds; a threshold is infinite if `levels` excludes its split."""
-        once = self.once if self.levels > 0 else INFINITE
-        return once, self.twice if self.levels > 1 else INFINITE
+        once = self.once if self.levels > 0 else INFINITE_THRESHOLD
+        return once, self.twice if self.levels > 1 else INFINITE_THRESHOLD
 
     @property
     def width(self) -> np.float32:
@@ -229,7 +229,7 @@ class NormalDrop(Criterion):
 @njit
 def edge_dots(normals: Floats32, edges: Unsigned32, dots: Floats32) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
-    assert normals.shape[1] == WIDTH and edges.shape[1] == 2
+    assert normals.shape[1] == ROW_WIDTH and edges.shape[1] == 2
     for e in range(edges.shape[0]):
         start = row_of(normals, edges[e, 0])
         end = row_of(normals, edges[e, 1])

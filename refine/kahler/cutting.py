@@ -10,7 +10,7 @@ from ..mesh.connectivity import Connectivity
 from .criterion import Criterion
 from .frame import FrameBuffers
 from .scheme import Scheme
-from .table import CONFIGURATIONS, Patterns
+from .table import CONFIGURATION_TABLE, Patterns
 
 
 class Cutting:
@@ -20,7 +20,7 @@ class Cutting:
     one refiner.
     """
 
-    patterns: Patterns = CONFIGURATIONS
+    patterns: Patterns = CONFIGURATION_TABLE
     """The table in which triangles are looked up."""
     has_centres = False
     """Whether triangles may have a point in the middle."""

@@ -17,7 +17,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Floats64, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ..mesh.connectivity import Connectivity
 
-ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
+ROWS, SPLIT_EDGES, TWICE_SPLIT_EDGES, TRIANGLES, CENTRES = range(5)
 """Places in `FrameBuffers.counts`: output rows without centres, split edges, edges split twice,
 subtriangles, triangles with a centre.
 """
@@ -52,9 +52,9 @@ class FrameBuffers(NamedTuple):
     second, a quarter point, the middle and another quarter point.
     """
     split_once: Unsigned32
-    """The edges that are split; the first `counts[ONCE]` are valid."""
+    """The edges that are split; the first `counts[SPLIT_EDGES]` are valid."""
     split_twice: Unsigned32
-    """The edges that are split twice; the first `counts[TWICE]` are valid."""
+    """The edges that are split twice; the first `counts[TWICE_SPLIT_EDGES]` are valid."""
     configurations: Unsigned16
     """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
     centre_triangles: Unsigned32
@@ -64,19 +64,19 @@ class FrameBuffers(NamedTuple):
     centre_weights: Floats32
     """Position of each centre in its triangle: weights of the corners, shape (F + 1, 3)."""
     counts: Integers64
-    """Counts, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
+    """Counts, shape (5,): see ROWS, SPLIT_EDGES, TWICE_SPLIT_EDGES, TRIANGLES, CENTRES."""
     rows: Floats32
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
 
     @property
     def split_edges(self) -> Unsigned32:
         """The edges that are split in this frame, once or twice."""
-        return self.split_once[: self.counts[ONCE]]
+        return self.split_once[: self.counts[SPLIT_EDGES]]
 
     @property
     def twice_split_edges(self) -> Unsigned32:
         """The edges that are split twice in this frame."""
-        return self.split_twice[: self.counts[TWICE]]
+        return self.split_twice[: self.counts[TWICE_SPLIT_EDGES]]
 
     @property
     def centre_count(self) -> int:
@@ -119,5 +119,5 @@ def split_everywhere(frame: FrameBuffers, vertex_count: int) -> FrameBuffers:
     frame.split_once[:edge_count] = every_edge
     frame.first_points[:edge_count] = vertex_count + every_edge
     frame.counts[ROWS] = vertex_count + edge_count
-    frame.counts[ONCE] = edge_count
+    frame.counts[SPLIT_EDGES] = edge_count
     return frame

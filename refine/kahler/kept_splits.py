@@ -14,7 +14,7 @@ from ...geometry.arrays import Floats32, Unsigned32
 from ...jit import njit
 from ..mesh.connectivity import Surroundings
 from ..mesh.lanes import (
-    LANE_COUNT,
+    LANE_WIDTH,
     copy_into_lanes,
     lanes_of,
     scaled,
@@ -61,8 +61,8 @@ def kept_rows(frame: FrameBuffers, around: Surroundings, rings: Rings) -> tuple[
     moves[corners[:, :2]] = True
     more_count = np.diff(rings.starts.astype(np.int64))
     kept = KeptRows(
-        points=np.zeros((vertex_count, LANE_COUNT), dtype=np.float32),
-        normals=np.zeros((vertex_count, LANE_COUNT), dtype=np.float32),
+        points=np.zeros((vertex_count, LANE_WIDTH), dtype=np.float32),
+        normals=np.zeros((vertex_count, LANE_WIDTH), dtype=np.float32),
         near=rings.near,
         own=np.where(moves, rings.own, ONE),
         ring=np.where(moves, rings.ring, ZERO),
@@ -87,7 +87,7 @@ def place_kept_vertices(first: int, last: int, kept: KeptRows, rows: Floats32) -
     points = kept.points
     normals = kept.normals
     near = kept.near
-    assert points.shape[1] == normals.shape[1] == LANE_COUNT and near.shape[1] == NEAR_COUNT
+    assert points.shape[1] == normals.shape[1] == LANE_WIDTH and near.shape[1] == NEAR_COUNT
     for k in range(first, last):
         v = np.uint32(k)
         total = lanes_of(points, near[v, 0])
@@ -129,7 +129,7 @@ def place_kept_edge_points(
     normals = kept.normals
     corners = kept.corners
     output_rows = kept.rows
-    assert points.shape[1] == normals.shape[1] == corners.shape[1] == LANE_COUNT
+    assert points.shape[1] == normals.shape[1] == corners.shape[1] == LANE_WIDTH
     left_count = 0
     for k in range(first, last):
         i = np.uint32(k)

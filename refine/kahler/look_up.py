@@ -17,9 +17,9 @@ import numpy as np
 from ...geometry.arrays import Floats32, Integers32, Integers64, Unsigned8, Unsigned16, Unsigned32
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
-from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_row
-from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
-from .table import CENTRE
+from ..mesh.vectors import HALF, QUARTER, ROW_WIDTH, THREE_QUARTERS, row_of, write_row
+from .frame import ROWS, SPLIT_EDGES, TRIANGLES, TWICE_SPLIT_EDGES, FrameBuffers
+from .table import CENTRE_POINT
 
 SIDE_BITS = np.uint32(2)
 SIDE_MASK = np.uint32(3)
@@ -90,8 +90,8 @@ def number_points(
         row += points_on(splits[r])
     counts[ROWS] = row
     counts[TRIANGLES] = triangle_count
-    counts[ONCE] = once_count
-    counts[TWICE] = twice_count
+    counts[SPLIT_EDGES] = once_count
+    counts[TWICE_SPLIT_EDGES] = twice_count
     return row, triangle_count, int(most)
 
 
@@ -150,10 +150,10 @@ def look_up_triangles(
     reads the quarter points in reverse. Centres are numbered in the order of the triangles that
     have one.
     """
-    assert corners.shape[1] == triangle_attribute_edges.shape[1] == WIDTH
-    assert triangles.shape[1] == subtriangles.shape[2] == WIDTH
-    points = np.zeros(CENTRE + 1, np.uint32)
-    points[CENTRE] = first_centre
+    assert corners.shape[1] == triangle_attribute_edges.shape[1] == ROW_WIDTH
+    assert triangles.shape[1] == subtriangles.shape[2] == ROW_WIDTH
+    points = np.zeros(CENTRE_POINT + 1, np.uint32)
+    points[CENTRE_POINT] = first_centre
     one = np.uint32(1)
     two = np.uint32(2)
     count = np.uint32(0)
@@ -179,4 +179,4 @@ def look_up_triangles(
             write_row(triangles, count, (points[a], points[b], points[c]))
             source[count] = t
             count += one
-        points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
+        points[CENTRE_POINT] += subtriangles[row, 0, 0] == CENTRE_POINT

@@ -53,7 +53,7 @@ from ..mesh.threads import parallel_for, threads_for
 from ..mesh.vectors import (
     HALF,
     ONE,
-    WIDTH,
+    ROW_WIDTH,
     ZERO,
     Vector,
     mix,
@@ -63,7 +63,7 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-from .frame import ONCE, TWICE, FrameBuffers
+from .frame import SPLIT_EDGES, TWICE_SPLIT_EDGES, FrameBuffers
 from .kept_splits import (
     KeptRows,
     copy_frame,
@@ -115,7 +115,7 @@ class LoopScheme(Scheme):
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
-        if threads_for(len(frame.points) + int(frame.counts[ONCE])) > 1:
+        if threads_for(len(frame.points) + int(frame.counts[SPLIT_EDGES])) > 1:
             if self._kept is None:
                 self._place_shared(frame)
             else:
@@ -196,7 +196,7 @@ def place_vertices(
     rows = frame.rows
     near = rings.near
     starts = rings.starts
-    assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR_COUNT
+    assert points.shape[1] == normals.shape[1] == ROW_WIDTH and near.shape[1] == NEAR_COUNT
     for v in range(first, last):
         point = row_of(points, v)
         if geomorph[v] > ZERO:
@@ -337,11 +337,11 @@ def place_by_loop(
     of_frame = FrameBuffers(*frame)
     of_edges = Surroundings(*around)
     counts = of_frame.counts
-    split = of_frame.split_once[: counts[ONCE]]
+    split = of_frame.split_once[: counts[SPLIT_EDGES]]
     geomorph_vertices(of_edges.points, split, of_frame.geomorph_once, vertex_geomorph)
     place_vertices(0, len(of_frame.points), of_frame, Rings(*rings), vertex_geomorph)
-    place_edge_points(0, counts[ONCE], of_frame, of_edges, edge_points)
-    place_quarters(0, counts[TWICE], of_frame, of_edges, edge_points)
+    place_edge_points(0, counts[SPLIT_EDGES], of_frame, of_edges, edge_points)
+    place_quarters(0, counts[TWICE_SPLIT_EDGES], of_frame, of_edges, edge_points)
 
 
 @njit(lanes=True)
@@ -363,7 +363,7 @@ def place_kept(
     place_crowded_vertices(matrix, Rings(*rings), rows)
     place_kept_edge_points(0, inside_count, matrix, EDGE_END_WEIGHT, EDGE_WING_WEIGHT, rows)
     place_kept_edge_points(inside_count, len(matrix.edges), matrix, BORDER_END_WEIGHT, ZERO, rows)
-    twice_count = of_frame.counts[TWICE]
+    twice_count = of_frame.counts[TWICE_SPLIT_EDGES]
     if twice_count > 0:
         keep_edge_points(matrix, rows, edge_points)
         place_quarters(0, twice_count, of_frame, Surroundings(*around), edge_points)

@@ -66,7 +66,7 @@ import numpy as np
 
 from ...geometry.arrays import Integers64, Unsigned8
 
-CENTRE = 12
+CENTRE_POINT = 12
 """Number of a centre of a triangle, which none of the paper's patterns has."""
 CONFIGURATION_COUNT = 27
 """Configurations of three edges that are split 0, 1 or 2 times."""
@@ -93,7 +93,7 @@ def _point_coordinates() -> Integers64:
 
 POINT_COORDINATES = _point_coordinates()
 # The same in plain Python, which is faster for few points.
-_PLACES = [tuple(point) for point in POINT_COORDINATES.tolist()]
+_POINT_PLACES = [tuple(point) for point in POINT_COORDINATES.tolist()]
 
 
 def splits_of(configuration: int) -> tuple[int, int, int]:
@@ -156,19 +156,19 @@ def _is_near_end(point: int) -> bool:
 
 def _on_one_edge(polygon: list[int], *, without: int) -> bool:
     """Return whether all points of a polygon but one lie on the same edge of the triangle."""
-    left = [_PLACES[point] for point in polygon if point != without]
+    left = [_POINT_PLACES[point] for point in polygon if point != without]
     return any(all(place[k] == 0 for place in left) for k in range(3))
 
 
 def _area(triangle: Triangle) -> int:
     """Signed area in sixteenths of the whole triangle."""
-    (a, b, c), (d, e, f), (g, h, i) = (_PLACES[point] for point in triangle)
+    (a, b, c), (d, e, f), (g, h, i) = (_POINT_PLACES[point] for point in triangle)
     return int(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) // 4
 
 
 def _squared_distance(first: int, second: int) -> int:
     """Squared distance in an equilateral triangle of side 4."""
-    u, v, w = (p - q for p, q in zip(_PLACES[first], _PLACES[second], strict=True))
+    u, v, w = (p - q for p, q in zip(_POINT_PLACES[first], _POINT_PLACES[second], strict=True))
     return int(-(u * v + v * w + w * u))
 
 
@@ -225,5 +225,5 @@ def _build_table() -> Patterns:
     return table_of(rows)
 
 
-CONFIGURATIONS = _build_table()
+CONFIGURATION_TABLE = _build_table()
 """The paper's 27 patterns."""

@@ -35,7 +35,7 @@ from ...jit import njit
 from .seams import find_seams
 from .validation import as_indices
 
-MOST_VERTICES = 2**31  # the tables that the kernels fill have numbers of 32 bits
+MOST_MESH_VERTICES = 2**31  # the tables that the kernels fill have numbers of 32 bits
 
 
 class Surroundings(NamedTuple):
@@ -122,15 +122,15 @@ def connect_writable(
 
     Compiled code takes writable arrays faster.
     """
-    if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_VERTICES:
-        most = MOST_VERTICES - 1
+    if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_MESH_VERTICES:
+        most = MOST_MESH_VERTICES - 1
         raise ValueError(
             f"vertex_count must be a whole number from 0 to {most}, got {vertex_count!r}"
         )
     given = as_indices("faces", faces, vertex_count, "the vertices")
     corners = np.array(given, dtype=np.uint32, order="C")
     if face_uv is not None:
-        face_uv = as_indices("face_uv", face_uv, MOST_VERTICES, "the texture coordinates")
+        face_uv = as_indices("face_uv", face_uv, MOST_MESH_VERTICES, "the texture coordinates")
         if len(face_uv) != len(corners):
             raise ValueError(
                 f"face_uv must have one row per triangle ({len(corners)}), got {len(face_uv)}"

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...geometry.arrays import Floats32
 from ...jit import njit
-from .vectors import ONE, WIDTH, Number, is_representable
+from .vectors import ONE, ROW_WIDTH, Number, is_representable
 
-LANE_COUNT = 4
+LANE_WIDTH = 4
 """Columns of a row. A kernel that asserts this width is faster, because the compiler knows the row
 stride.
 """
@@ -23,7 +23,7 @@ Lanes = tuple[np.float32, np.float32, np.float32, np.float32]
 @njit
 def copy_into_lanes(first: int, last: int, vectors: Floats32, rows: Floats32) -> None:
     """Copy vectors, shape (N, 3), into rows of lanes, shape (N, 4), whose last column is zero."""
-    assert vectors.shape[1] == WIDTH and rows.shape[1] == LANE_COUNT
+    assert vectors.shape[1] == ROW_WIDTH and rows.shape[1] == LANE_WIDTH
     for k in range(first, last):
         rows[k, 0] = vectors[k, 0]
         rows[k, 1] = vectors[k, 1]

@@ -14,7 +14,7 @@ from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...jit import njit
 from .vectors import (
     ONE,
-    WIDTH,
+    ROW_WIDTH,
     ZERO,
     Vector,
     add_to_row,
@@ -42,7 +42,7 @@ def normalise(vectors: Floats32) -> None:
     The loop has no branch, so the compiler vectorises it. A second loop treats the vectors whose
     squares single precision cannot represent, one by one.
     """
-    assert vectors.shape[1] == WIDTH
+    assert vectors.shape[1] == ROW_WIDTH
     left_count = 0
     for v in range(vectors.shape[0]):
         vector = row_of(vectors, v)
@@ -64,7 +64,7 @@ def vertex_normals(positions: Floats64, faces: Unsigned32, normals: Floats32) ->
     It is zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape
     (F, 3).
     """
-    assert positions.shape[1] == faces.shape[1] == normals.shape[1] == WIDTH
+    assert positions.shape[1] == faces.shape[1] == normals.shape[1] == ROW_WIDTH
     normals[:] = ZERO
     for t in range(faces.shape[0]):
         a = faces[t, 0]

@@ -20,7 +20,7 @@ Measured:
  grids with edges of a fortieth of that are refined properly from 1e-7 to 1e9.
 """
 
-_DOUBLE = np.dtype(np.float64)
+_DOUBLE_TYPE = np.dtype(np.float64)
 
 
 def checked_mesh(
@@ -125,7 +125,7 @@ def take_positions(
     array.
     """
     source: npt.NDArray[Any] = given
-    if given.dtype is not _DOUBLE or not given.flags.carray:
+    if given.dtype is not _DOUBLE_TYPE or not given.flags.carray:
         positions[...] = given
         source = positions
     if copy_finite(source, positions, points) == 0:

@@ -12,7 +12,7 @@ Rows = npt.NDArray[np.number[Any]]
 Number = int | np.uint32
 Vector = tuple[Any, Any, Any]
 """Three numbers in one precision, single or double."""
-WIDTH = 3
+ROW_WIDTH = 3
 """Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
 
 ZERO = np.float32(0.0)
@@ -21,7 +21,7 @@ ONE = np.float32(1.0)
 THIRD = np.float32(1 / 3)
 QUARTER = np.float32(0.25)
 THREE_QUARTERS = np.float32(0.75)
-TINY = np.finfo(np.float32).tiny
+SMALLEST_FLOAT = np.finfo(np.float32).tiny
 SHORT_SQUARE = np.float32(1e-30)
 LONG_SQUARE = np.float32(1e37)
 """Range of squared lengths in which single precision represents a length to the last bit."""

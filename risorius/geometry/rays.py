@@ -12,7 +12,7 @@ from .arrays import Flags, Floats64, Integers32, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
 
-PARALLEL = 1e-12  # below this a triangle counts as parallel to the line
+PARALLEL_VOLUME = 1e-12  # below this a triangle counts as parallel to the line
 
 
 def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tuple[Floats64, ...]:
@@ -20,8 +20,8 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
 
     origins, directions: (n, 3) or (3,). corners: (n, 3, 3). volume: six times the volume of the
     tetrahedron of direction and triangle, above 0 if the line comes from outside; if its size is
-    below PARALLEL, the other results are 0. The triangle is met if u, v and 1 - u - v are not
-    negative. Returns four arrays (n,).
+    below PARALLEL_VOLUME, the other results are 0. The triangle is met if u, v and 1 - u - v are
+    not negative. Returns four arrays (n,).
     """
     a = corners[:, 0]
     ab = corners[:, 1] - corners[:, 0]
@@ -30,7 +30,7 @@ def crossings(origins: Floats64, directions: Floats64, corners: Floats64) -> tup
     from_a = origins - a
     turned = np.cross(from_a, ab)
     volume = (ab * across).sum(axis=1)
-    is_met = np.abs(volume) > PARALLEL
+    is_met = np.abs(volume) > PARALLEL_VOLUME
     inverse = np.divide(1.0, volume, out=np.zeros_like(volume), where=is_met)
     u = (from_a * across).sum(axis=1)
     v = (turned * directions).sum(axis=1)
@@ -87,7 +87,7 @@ def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
     across_y = dz * cx - dx * cz
     across_z = dx * cy - dy * cx
     volume = bx * across_x + by * across_y + bz * across_z
-    if not abs(volume) > PARALLEL:
+    if not abs(volume) > PARALLEL_VOLUME:
         return False
     inverse = 1.0 / volume
     x = start[0] - ax
@@ -118,9 +118,9 @@ def exits(
     is_seen = (normals * corners[:, 0]).sum(axis=1) > 0.0  # the triangle's inner side
     normals = normals[is_seen]
     corners = corners[is_seen]
-    axes_of_cones = unit_vectors(corners, PARALLEL)
+    axes_of_cones = unit_vectors(corners, PARALLEL_VOLUME)
     middle = axes_of_cones.sum(axis=1)
-    middle = unit_vectors(middle, PARALLEL)
+    middle = unit_vectors(middle, PARALLEL_VOLUME)
     # A triangle lies in the cone around its middle through its corners, unless the cone is blunt.
     cone = np.einsum("fik,fk->fi", axes_of_cones, middle).min(axis=1)
     cone_slack = 1e-6  # of a cosine, for rounding
@@ -168,7 +168,7 @@ def _meetings(
             across[1] = dz * ac[0] - dx * ac[2]
             across[2] = dx * ac[1] - dy * ac[0]
             volume = ab[0] * across[0] + ab[1] * across[1] + ab[2] * across[2]
-            if abs(volume) <= PARALLEL:
+            if abs(volume) <= PARALLEL_VOLUME:
                 continue
             inverse = 1.0 / volume
             u = -(a[0] * across[0] + a[1] * across[1] + a[2] * across[2]) * inverse

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.recordings.reading import read_take
 from risorius.app.recordings.take import Take
 
@@ -80,7 +80,7 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
     time = np.arange(count) / 60.0
     down = 0.3 * np.sin(3.0 * time)
     right = 0.2 * np.sin(5.0 * time + 1.0)
-    shapes = {name: 0.2 + 0.1 * np.sin(time + place) for place, name in enumerate(ARKIT)}
+    shapes = {name: 0.2 + 0.1 * np.sin(time + place) for place, name in enumerate(ARKIT_SHAPES)}
     for side, inward in (("Left", right), ("Right", -right)):
         shapes[f"eyeLookDown{side}"] = np.maximum(down, 0.0) / 0.61
         shapes[f"eyeLookUp{side}"] = np.maximum(-down, 0.0) / 0.44
@@ -150,7 +150,7 @@ def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
     columns = pyfeat(count)
     columns |= {"frame": list(range(0, 2 * count, 2)), "AU06": np.full(count, 0.4)}
     columns |= {name: np.radians(columns[name]) for name in ("Pitch", "Roll", "Yaw")}
-    shapes = {name: np.linspace(0.0, 0.5, count) for name in ARKIT if name != "tongueOut"}
+    shapes = {name: np.linspace(0.0, 0.5, count) for name in ARKIT_SHAPES if name != "tongueOut"}
     mesh = {f"mesh_{axis}_{number}": np.full(count, 0.1) for axis in "xy" for number in range(900)}
     return columns | {
         "gaze_pitch": np.full(count, 0.1),

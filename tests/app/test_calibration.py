@@ -16,11 +16,11 @@ from risorius.app.recordings.calibration import (
     neutral_now,
     neutral_of,
 )
-from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from risorius.app.recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES, VISEME_NAMES
 
 from .recording_files import take_of
 
-SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
+SHAPES = (*ARKIT_SHAPES, "AU12", "AU12_left", "AU4_right")
 ANGLES = (*HEAD_ANGLES, *EYE_ANGLES)
 
 shapes = st.dictionaries(st.sampled_from(SHAPES), st.floats(0.0, 1.0), min_size=1)
@@ -108,7 +108,7 @@ def test_a_wrong_neutral_is_reported(method):
 def test_visemes_are_as_they_were_written():
     take = take_of(viseme_sil=0.4)
     for method in (None, "first:1", "percentile"):
-        assert set(neutral_of(take, method)) & set(VISEMES) == set()
+        assert set(neutral_of(take, method)) & set(VISEME_NAMES) == set()
 
 
 def test_short_and_calibrated_takes_keep_their_faces():

@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app import capture as capture_room
 from risorius.app.capture.drawing import camera_for
 from risorius.app.refining.drawn_mesh import bind
-from risorius.app.refining.presets import PRESETS, STATIC, Refinement
+from risorius.app.refining.presets import PRESETS, STATIC_REFINER, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, called_head
 from risorius.assets.topology import boundary_loops
@@ -92,8 +92,10 @@ def test_closed_lids_cover_the_eyes_by_every_look(scene):
     The paper's rule pulls lids apart.
     """
     shut = held(scene, blink=1.0)
-    for look in (STATIC, "paper", "smooth"):
-        refinement = Refinement(refiner=STATIC) if look == STATIC else Refinement(look)
+    for look in (STATIC_REFINER, "paper", "smooth"):
+        refinement = (
+            Refinement(refiner=STATIC_REFINER) if look == STATIC_REFINER else Refinement(look)
+        )
         mesh = refiner_for(scene, refinement).refine(shut)
         corners = np.asarray(mesh.positions, float)[mesh.triangles]
         for eye in scene.head.eyes:

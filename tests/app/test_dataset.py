@@ -15,7 +15,7 @@ from pytest import approx
 from scipy.ndimage import binary_dilation
 
 from risorius import render
-from risorius.app.dataset.folder import UNFINISHED, SetFolder
+from risorius.app.dataset.folder import UNFINISHED_SUFFIX, SetFolder
 from risorius.app.dataset.labels import action_units, labels_of_face
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.sampling import draw
@@ -91,7 +91,7 @@ def test_a_damaged_sample_is_made_anew(made, tmp_path):
     shutil.copytree(made, folder)
     (folder / "000000.json").write_bytes(b"")
     (folder / "000002.png").unlink()
-    (folder / UNFINISHED / "0000034711").mkdir(parents=True)
+    (folder / UNFINISHED_SUFFIX / "0000034711").mkdir(parents=True)
     assert "2 of them new" in run(folder, "--resume").output
     assert content(folder) == content(made)
     assert "0 of them new" in run(folder, "--resume").output

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.dataset.folder import UNFINISHED, SetFolder
+from risorius.app.dataset.folder import UNFINISHED_SUFFIX, SetFolder
 from risorius.app.dataset.making import make_set
 from risorius.app.dataset.packing import Packing
 from risorius.app.dataset.request import SetRequest, request_of
@@ -187,7 +187,7 @@ def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
     assert not (tmp_path / "nowhere").exists()
     assert sample.files == {path.name: path.read_bytes() for path in loose.glob("000001*")}
     folder = SetFolder(tmp_path / "set")
-    (folder.path / UNFINISHED).mkdir(parents=True)
+    (folder.path / UNFINISHED_SUFFIX).mkdir(parents=True)
     folder.take_sample(1, sample.files)
     assert folder.has(1)
     assert folder.files_of(1)[0].read_bytes() == (loose / "000001.json").read_bytes()
@@ -240,7 +240,7 @@ def test_the_table_chooses_persons(tmp_path, text, is_so):
 def test_a_cluster_hands_bytes_back(loose, cluster, tmp_path):
     """Workers that cannot see the folder return the bytes of their samples."""
     folder = SetFolder(tmp_path / "set")
-    (folder.path / UNFINISHED).mkdir(parents=True)
+    (folder.path / UNFINISHED_SUFFIX).mkdir(parents=True)
     share = SampleBatch(request_for(tmp_path / "nowhere"), (0, 1))
     for sample in make_on_cluster(folder, [share], cluster.scheduler_address):
         folder.take_sample(sample.number, sample.files)

@@ -107,7 +107,7 @@ def test_offscreen_alone(machine_without, missing):
 def test_an_ffmpeg_that_does_not_answer(machine_without, tmp_path, monkeypatch, program):
     """An ffmpeg that hangs, fails or does not exist counts as missing, without a long wait."""
     machine_without()
-    monkeypatch.setattr(doctor, "FFMPEG_TIMEOUT", 0.3)
+    monkeypatch.setattr(doctor, "VERSION_TIMEOUT", 0.3)
     fake = tmp_path / "ffmpeg"
     fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")
     result = ask()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.export.formats import FORMATS
+from risorius.app.export.formats import MOTION_FORMATS
 
 from .command_line import refusal, risorius
 
@@ -17,7 +17,7 @@ SCRIPT = 'scene = "plane"\nduration = 0.2\n[[pose]]\ntime = 0.0\namplitude = 1.0
 FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
 OUTPUTS = {
     each.name: f"out{each.suffixes[0]}" if each.suffixes else "out"
-    for each in FORMATS
+    for each in MOTION_FORMATS
     if each.name != "arkit"
 }
 FULL_DISK = """
@@ -60,7 +60,7 @@ def test_every_format_is_written_and_leaves_nothing_else(name, folder):
         result = export(*arguments)
         assert result.exit_code == 0, result.output
         assert re.search(r"7 frames, 154 triangles, [1-9]\d* kB$", result.output, re.MULTILINE)
-    chosen = next(each for each in FORMATS if each.name == name)
+    chosen = next(each for each in MOTION_FORMATS if each.name == name)
     allowed = {path.name for path in chosen.outputs(Path(OUTPUTS[name]))}
     found = {item.name for item in folder.iterdir()} - {"plane.toml", "face.toml"}
     assert OUTPUTS[name] in found

@@ -17,7 +17,7 @@ from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.export.morphs import decompose
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.rig.poses import rest_in
 from risorius.app.rig.scene_meshes import _normal_map
 from risorius.app.rig.surface import MovingSurface
@@ -305,7 +305,7 @@ def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
     """
     player = Player(glb)
     names = player.target_names("skin")
-    assert tuple(names[:52]) == ARKIT
+    assert tuple(names[:52]) == ARKIT_SHAPES
     assert names[52:] == [f"residual {number + 1}" for number in range(len(names) - 52)]
     shapes = player.shapes("skin")
     for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight"):
@@ -321,7 +321,7 @@ def test_named_targets_alone_follow_the_motion(clip, tmp_path):
     path = tmp_path / "named.glb"
     remark = write(clip, path, format_for(path, None), ExportRequest(named_only=True))
     player = Player(path)
-    assert tuple(player.target_names("skin")) == ARKIT
+    assert tuple(player.target_names("skin")) == ARKIT_SHAPES
     assert "52 named targets and 0 residual ones" in remark
     assert 0.5 < 1000.0 * farthest(player, clip, "skin") < 8.0  # [mm], of 50 that the skin moves
     # Only one ARKit shape moves the tongue: tongueOut.

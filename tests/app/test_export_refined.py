@@ -14,7 +14,7 @@ from risorius.app.errors import UserError
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import ExportRequest, check_request, format_for, write
 from risorius.app.export.refined import RefinedClip, with_refined_skin
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.refining.presets import Refinement
 from risorius.app.rig.surface import RefinedSurface
 from risorius.app.scenes import FaceScene
@@ -95,7 +95,7 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
     assert remark is not None and "at most 0." in remark
     player = Player(path)
     skin = refined.clip.skin
-    assert tuple(player.target_names("skin")[:52]) == ARKIT
+    assert tuple(player.target_names("skin")[:52]) == ARKIT_SHAPES
     assert 1000.0 * norm(player.shapes("skin")["jawOpen"], axis=1).max() > 20.0
     indices = player.values(player.primitive("skin").indices).reshape(-1, 3)
     for frame in range(refined.clip.frame_count):

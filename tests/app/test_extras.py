@@ -7,14 +7,14 @@ import sys
 import tomllib
 from pathlib import Path
 
-from risorius.app.cli.doctor import EXTRAS
+from risorius.app.cli.doctor import MODULES_OF_EXTRAS
 
 ROOT = Path(__file__).parents[2]
 WITHOUT = f"""
 import sys
 class Missing:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {sum(EXTRAS.values(), ())!r}:
+        if name.partition(".")[0] in {sum(MODULES_OF_EXTRAS.values(), ())!r}:
             raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 sys.meta_path.insert(0, Missing())
 """
@@ -91,7 +91,7 @@ def test_the_doctor_lists_missing_extras(tmp_path):
     lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
     assert (
         lines["extras"]
-        == f"none; for the others, in the checkout: pip install '.[{','.join(EXTRAS)}]'"
+        == f"none; for the others, in the checkout: pip install '.[{','.join(MODULES_OF_EXTRAS)}]'"
     )
     assert lines["window"].startswith("no. the window needs imgui-bundle; install it")
     assert lines["Missing"].startswith("window, films;")
@@ -123,10 +123,10 @@ def test_extras_install_their_libraries():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
     packages = {"pxr": "usd-core", "imgui_bundle": "imgui-bundle", "pythonosc": "python-osc"}
-    for extra, modules in EXTRAS.items():
+    for extra, modules in MODULES_OF_EXTRAS.items():
         for module in modules:
             package = packages.get(module, module.replace("_", "-"))
             assert any(each.startswith(package) for each in extras[extra]), module
             assert not any(each.startswith(package) for each in project["dependencies"]), module
     (everything,) = extras["all"]
-    assert all(extra in everything for extra in EXTRAS)
+    assert all(extra in everything for extra in MODULES_OF_EXTRAS)

@@ -11,7 +11,7 @@ import pytest
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
-from risorius.app.capture.outputs import FORMATS
+from risorius.app.capture.outputs import FILM_FORMATS
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
@@ -66,7 +66,7 @@ def seconds_of(path):
     return total
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("suffix", FILM_FORMATS)
 def test_frames_are_in_order_and_complete(tmp_path, suffix):
     """Each kind of film, of an odd size, returns every picture at its time."""
     path = tmp_path / f"film{suffix}"

@@ -8,7 +8,7 @@ import pytest
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.assets import Segment
-from risorius.assets.identities import COLLARS
+from risorius.assets.identities import COLLAR_BUILDERS
 
 
 @pytest.mark.slow
@@ -24,7 +24,7 @@ def test_rims_are_not_dashed_by_highlights():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("collar", COLLARS)
+@pytest.mark.parametrize("collar", COLLAR_BUILDERS)
 def test_rows_of_the_table_choose_collars(tmp_path: Path, collar: str):
     """A row of the table gives every person this collar, with its label and class clothing."""
     table = tmp_path / "collars.toml"
@@ -34,4 +34,4 @@ def test_rows_of_the_table_choose_collars(tmp_path: Path, collar: str):
     shot = Studio(request).shoot(0)
     assert shot.known.labels["person"]["collar"] == collar
     assert (shot.known.images["segmentation"] == Segment.CLOTHING).sum() > 300
-    assert set(COLLARS) == {"band", "roll", "v", "wings"}
+    assert set(COLLAR_BUILDERS) == {"band", "roll", "v", "wings"}

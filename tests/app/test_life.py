@@ -8,7 +8,7 @@ import pytest
 
 from risorius.app.capture.drawing import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
-from risorius.app.control_names.angles import DEGREES, GAZE_ANGLE
+from risorius.app.control_names.angles import FULL_ANGLES, GAZE_ANGLE
 from risorius.app.motion.life import (
     EYES_MOST,
     LID_CONTROL,
@@ -29,8 +29,8 @@ def test_angles_are_those_of_the_rig():
     """A control at 1 turns head and eyes as far as in the rig of all heads."""
     rig = load("head").rig
     for name in ("yaw", "pitch", "roll"):
-        assert DEGREES[f"head_{name}"] == rig["head"][f"{name}_deg"]
-    assert {DEGREES[name] for name in DEGREES if name.startswith("gaze")} == {GAZE_ANGLE}
+        assert FULL_ANGLES[f"head_{name}"] == rig["head"][f"{name}_deg"]
+    assert {FULL_ANGLES[name] for name in FULL_ANGLES if name.startswith("gaze")} == {GAZE_ANGLE}
     assert rig["eyes"]["gaze_deg"] == GAZE_ANGLE
 
 

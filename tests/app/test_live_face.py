@@ -18,7 +18,7 @@ from risorius.app.live.live_face import (
     LiveFace,
     State,
 )
-from risorius.app.live.protocols import LOOPBACK, PROTOCOLS, Listening
+from risorius.app.live.protocols import LOOPBACK_ADDRESS, PROTOCOLS, Listening
 from risorius.app.live.receiver import Receiver
 
 from .live_packets import live_link, osc, vmc
@@ -53,7 +53,7 @@ class Wire:
         """Send packets, and wait until they have arrived."""
         wanted = self.face.received + len(packets)
         for packet in packets:
-            self._socket.sendto(packet, (LOOPBACK, self.face.port))
+            self._socket.sendto(packet, (LOOPBACK_ADDRESS, self.face.port))
         assert until(lambda: self.face.received == wanted)
 
     def take(self, *packets, seconds=0.0):
@@ -225,9 +225,9 @@ def test_an_address_of_another_computer_is_refused(address):
 def test_only_the_address_given_is_listened_on():
     """By default the port is open on the loopback address only."""
     for kind in PROTOCOLS:
-        assert Listening(kind).address == LOOPBACK
+        assert Listening(kind).address == LOOPBACK_ADDRESS
     receiver = Receiver(Listening("livelink", port=0))
     try:
-        assert receiver.address == LOOPBACK
+        assert receiver.address == LOOPBACK_ADDRESS
     finally:
         receiver.close()

@@ -12,8 +12,8 @@ from risorius.app.live.livelink import packet_of
 from risorius.app.live.livelink import parse as parse_live_link
 from risorius.app.live.protocols import PROTOCOLS
 from risorius.app.live.vmc import parse as parse_vmc
-from risorius.app.recordings.calibration import ANGLES
-from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from risorius.app.recordings.calibration import ANGLE_NAMES
+from risorius.app.recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES, VISEME_NAMES
 
 from .live_packets import LIVE_LINK, SHAPES, live_link, osc, vmc
 
@@ -42,7 +42,7 @@ def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
         channels = channels_of(frame)
         assert frame.subject == "Ada"
         assert frame.has_face
-        assert {each for each in ARKIT if channels[each]} == {shape}
+        assert {each for each in ARKIT_SHAPES if channels[each]} == {shape}
         assert channels[shape] == 0.75
 
 
@@ -185,7 +185,7 @@ def test_messages_that_we_do_not_read_are_passed_over(caplog):
 
 def test_a_sent_packet_is_read_back(generator):
     """A packet of the project's sender has every shape and angle when it is read."""
-    shapes = {name: float(generator.random()) for name in ARKIT}
+    shapes = {name: float(generator.random()) for name in ARKIT_SHAPES}
     angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}
     packet = packet_of({**shapes, **angles}, subject="x", frame=1)
     assert channels_of(parse_live_link(packet)) == approx({**shapes, **angles}, abs=0.006)
@@ -195,9 +195,9 @@ def is_sound(frame):
     """Whether there is no frame, or a plausible one."""
     if frame is None:
         return True
-    known = {*ARKIT, *VISEMES, *ANGLES}
-    shapes = [value for name, value in frame.channels.items() if name not in ANGLES]
-    angles = [abs(value) for name, value in frame.channels.items() if name in ANGLES]
+    known = {*ARKIT_SHAPES, *VISEME_NAMES, *ANGLE_NAMES}
+    shapes = [value for name, value in frame.channels.items() if name not in ANGLE_NAMES]
+    angles = [abs(value) for name, value in frame.channels.items() if name in ANGLE_NAMES]
     return (
         frame.channels.keys() <= known
         and all(0.0 <= value <= 1.0 for value in shapes)

@@ -14,7 +14,7 @@ from risorius.app.playback import LEAD_TIME, Playback
 from risorius.app.recordings.conversion import lead_of, script_of
 from risorius.app.recordings.take import Take
 from risorius.app.script.script_file import load_script
-from risorius.app.script.thinning import TOLERANCE
+from risorius.app.script.thinning import LINE_TOLERANCE
 
 from . import recording_files
 from .command_line import risorius
@@ -44,7 +44,7 @@ def test_the_lead_shifts_the_script(lead, moment):
     script, _ = script_of(take, Playback(neutral="none", lead=lead), limits_of("face"))
     for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
         recorded = np.interp(moment + lead_of(name, lead), take.times, size * wave())
-        assert script.at(moment)[name] == approx(recorded, abs=2.0 * TOLERANCE)
+        assert script.at(moment)[name] == approx(recorded, abs=2.0 * LINE_TOLERANCE)
     assert script.duration == approx(3.0), "as long as its sound"
 
 

@@ -7,12 +7,12 @@ import pytest
 from pytest import approx
 
 from risorius.app.errors import UserError
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import has_note
 
-NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
+NAMES = [name for name in sorted(ARKIT_SHAPES) if name != "tongueOut"]
 
 
 def written(path, document):

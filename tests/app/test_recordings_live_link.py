@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import ANGLES, has_note, live_link, take_in, timecodes, written
@@ -19,9 +19,9 @@ def test_a_raw_take(tmp_path):
     assert take.kind == "Live Link Face"
     assert not take.is_calibrated
     assert not take.unknown
-    assert set(ARKIT) < set(take.channels)
+    assert set(ARKIT_SHAPES) < set(take.channels)
     assert take.times == approx(np.arange(120) / 60.0, abs=1e-9)
-    for name in ARKIT:
+    for name in ARKIT_SHAPES:
         there = np.array(columns[name[0].upper() + name[1:]])
         assert take.channels[name] == approx(there, abs=1e-6)
     for ours, theirs in (
@@ -100,7 +100,7 @@ def test_angles_that_are_switched_off(tmp_path):
 def test_a_calibrated_take(tmp_path):
     """A take is recognised as calibrated if brows and nose are 0 at rest, unlike in a raw take."""
     columns = live_link()
-    shapes = {name[0].upper() + name[1:] for name in ARKIT}
+    shapes = {name[0].upper() + name[1:] for name in ARKIT_SHAPES}
     calibrated = {
         name: np.maximum(np.array(values) - 0.2, 0.0) if name in shapes else values
         for name, values in columns.items()

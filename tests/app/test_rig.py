@@ -13,7 +13,7 @@ from numpy.linalg import norm
 from pytest import approx
 
 from risorius.app.errors import UserError
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.rig.avatar import RigRequest, file_head
 from risorius.app.rig.glb import Glb
 from risorius.app.rig.linearity import corrective_poses, table
@@ -55,7 +55,7 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
     """
     player = Player(built_in)
     shapes = player.shapes("skin")
-    assert tuple(shapes) == ARKIT
+    assert tuple(shapes) == ARKIT_SHAPES
     assert np.abs(player.attribute("skin", "POSITION") - METRES * face.rest_positions).max() < 1e-6
     for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight", "cheekPuff"):
         moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
@@ -100,7 +100,7 @@ def test_mouth_close_shuts_an_open_jaw(built_in, face):
 def test_parts_have_the_shapes_that_move_them(built_in):
     """Lower teeth and tongue have shapes that move them; hair has none, and eyes are nodes."""
     player = Player(built_in)
-    assert tuple(player.shapes("teeth_lower")) == ARKIT
+    assert tuple(player.shapes("teeth_lower")) == ARKIT_SHAPES
     lowered = player.shapes("teeth_lower")["jawOpen"][:, 1]
     assert lowered.max() < -0.005
     assert np.abs(player.shapes("teeth_lower")["mouthSmileLeft"]).max() == 0.0
@@ -165,7 +165,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
     player = Player(whole.avatar)
     points = player.attribute("head", "POSITION")
     assert np.array_equal(points[: len(mesh.vertices)], mesh.vertices.astype(np.float32))
-    assert tuple(player.shapes("head")) == ARKIT
+    assert tuple(player.shapes("head")) == ARKIT_SHAPES
     found = document(whole.avatar)
     count = sum(
         found["accessors"][primitive["indices"]]["count"] // 3
@@ -319,7 +319,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     points = player.attribute("head", "POSITION")
     assert np.abs(points[: len(fine.mesh.vertices)] - fine.mesh.vertices).max() < 1e-6
     shapes = player.shapes("head")
-    assert tuple(shapes) == ARKIT
+    assert tuple(shapes) == ARKIT_SHAPES
     upper, lower = fine.landmarks[[62, 66]]
     down = shapes["jawOpen"] @ TURN.T
     assert (down[lower, 1] < -0.02) and (abs(down[upper, 1]) < 0.006)
@@ -384,7 +384,7 @@ def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
     player = Player(copied[1])
     shapes = player.shapes("skin")
     # The file has shapes with the same names, so these names differ.
-    assert tuple(shapes)[-52:] == tuple(f"{name}.risorius" for name in ARKIT)
+    assert tuple(shapes)[-52:] == tuple(f"{name}.risorius" for name in ARKIT_SHAPES)
     moved = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     opened = shapes["jawOpen.risorius"]
     assert np.median(np.abs(opened / METRES - moved)) < 0.5
@@ -408,8 +408,8 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
     landmarks = whole.mesh.with_suffix(".json")
     folder = tmp_path / "shapes"
     output = succeeded("rig", whole.mesh, "--landmarks", landmarks, "--as", "obj", "-o", folder)
-    assert {path.stem for path in folder.glob("*.obj")} == {"neutral", *ARKIT}
-    assert f"52 shapes, {len(ARKIT) + 1} meshes" in output
+    assert {path.stem for path in folder.glob("*.obj")} == {"neutral", *ARKIT_SHAPES}
+    assert f"52 shapes, {len(ARKIT_SHAPES) + 1} meshes" in output
     others = {path.name for path in folder.iterdir() if path.suffix != ".obj"}
     assert others == {LIBRARY, PICTURE}
     for name in others:

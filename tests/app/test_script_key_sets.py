@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from risorius.app.script import Channel, Key, Pose, Script, keyframes
 from risorius.app.script.easings import EASINGS
 from risorius.app.script.key_sets import KeyId, KeySet
-from risorius.app.script.keyframes import POSES, all_keys
+from risorius.app.script.keyframes import POSE_TRACK, all_keys
 
 TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few values, so that keys often coincide
-TRACKS = st.sampled_from([POSES, "joy", "blink"])
+TRACKS = st.sampled_from([POSE_TRACK, "joy", "blink"])
 KEYS = st.frozensets(st.builds(KeyId, TRACKS, TIMES))
 EASING = st.sampled_from(sorted(EASINGS))
 
@@ -96,7 +96,7 @@ def keys_by_id(script):
     """Pairs of a key's id and the key without its time, for poses and tracks."""
     found = []
     for pose in script.poses:
-        found.append((KeyId(POSES, pose.time), (pose.values, pose.name, pose.easing)))
+        found.append((KeyId(POSE_TRACK, pose.time), (pose.values, pose.name, pose.easing)))
     for name, track in script.tracks.items():
         found += [(KeyId(name, key.time), (key.value, key.easing)) for key in track.keys]
     return found

@@ -10,7 +10,7 @@ from pytest import approx
 
 from risorius.app.errors import UserError
 from risorius.app.live.livelink import parse
-from risorius.app.live.protocols import LOOPBACK
+from risorius.app.live.protocols import LOOPBACK_ADDRESS
 from risorius.app.live.sender import Sender
 from risorius.app.recordings.take import Take
 
@@ -30,7 +30,7 @@ def take_of(**channels):
 def heard() -> Iterator[socket.socket]:
     """A socket that receives packets."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as opened:
-        opened.bind((LOOPBACK, 0))
+        opened.bind((LOOPBACK_ADDRESS, 0))
         opened.settimeout(10.0)
         yield opened
 
@@ -40,7 +40,7 @@ def test_a_take_comes_in_as_it_went_out(heard):
     smile = [0.0, 0.25, 0.5, 0.75]
     turn = [0.0, 5.0, 10.0, -15.0]
     take = take_of(mouthSmileLeft=smile, head_yaw=turn)
-    with Sender(LOOPBACK, heard.getsockname()[1], "test") as sender:
+    with Sender(LOOPBACK_ADDRESS, heard.getsockname()[1], "test") as sender:
         sender.play(take, sleep=lambda _: None)
     found = []
     while len(found) < 4:
@@ -87,7 +87,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard):
     clock, sleep, slept = clock_until(0.5)
     take = take_of(jawOpen=[0.0, 0.5, 1.0])
     with (
-        Sender(LOOPBACK, heard.getsockname()[1], "test") as sender,
+        Sender(LOOPBACK_ADDRESS, heard.getsockname()[1], "test") as sender,
         pytest.raises(Stopped),
     ):
         sender.play(take, is_looping=True, clock=clock, sleep=sleep)
@@ -99,7 +99,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard):
 def test_a_take_without_anything_to_send_is_refused():
     """A take without known channels is refused in one line with the file."""
     with (
-        Sender(LOOPBACK, None, "test") as sender,
+        Sender(LOOPBACK_ADDRESS, None, "test") as sender,
         pytest.raises(UserError, match=r"test\.csv: test has no values to send"),
     ):
         sender.play(take_of(viseme_PP=[1.0]))

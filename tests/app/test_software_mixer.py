@@ -9,7 +9,7 @@ from risorius import render
 from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
-from risorius.app.refining.presets import STATIC, Refinement
+from risorius.app.refining.presets import STATIC_REFINER, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.render.renderer import Renderer
 from risorius.render.sample_mixer import SampleMixer
@@ -23,7 +23,7 @@ CAMERAS = ("front", "20,-60", "-30,10,6")
 def studio() -> Iterator[Capture]:
     """Two heads side by side, in a size that is not a multiple of a tile."""
     options = CaptureOptions(
-        size=(405, 231), beside=(Refinement(refiner=STATIC),), captions=False, samples=4
+        size=(405, 231), beside=(Refinement(refiner=STATIC_REFINER),), captions=False, samples=4
     )
     with Capture(FaceScene(), options) as opened:
         if not opened.surface.is_software or not opened.surface.samples:

@@ -11,7 +11,7 @@ import scipy.signal
 from pytest import approx
 
 from risorius.app.capture import outputs
-from risorius.app.capture.outputs import WITH_SOUND
+from risorius.app.capture.outputs import SOUND_FILM_SUFFIXES
 from risorius.app.capture.outputs import Soundtrack as Heard
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
@@ -129,7 +129,7 @@ def test_a_project_stays_together(tmp_path):
 # Films.
 
 
-@pytest.mark.parametrize("suffix", WITH_SOUND)
+@pytest.mark.parametrize("suffix", SOUND_FILM_SUFFIXES)
 @pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
 def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
     """A film's first frame is at the first sample; a longer sound is cut, a shorter one kept."""

@@ -14,7 +14,7 @@ from risorius.app.errors import UserError
 from risorius.app.light_maps import read_light_map, scene_light
 from risorius.app.live.protocols import Listening
 from risorius.app.script.key_sets import KeyId, KeySet
-from risorius.app.script.keyframes import POSES
+from risorius.app.script.keyframes import POSE_TRACK
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer.documents import file_drop
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
@@ -214,13 +214,13 @@ def times(session):
 def test_delete_and_paste(session):
     """Selected keys are pasted at the playhead and deleted; both can be undone."""
     selection = KeySelection(session)
-    selection.keys = KeySet.from_keys(KeyId(POSES, 1.0))
+    selection.keys = KeySet.from_keys(KeyId(POSE_TRACK, 1.0))
     session.seek(2.0)
     selection.copy()
     selection.paste()
     assert times(session) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert session.script.poses[2].name == "joy"
-    assert selection.keys == {KeyId(POSES, 2.0)}
+    assert selection.keys == {KeyId(POSE_TRACK, 2.0)}
     assert "1 key deleted" in selection.delete()
     assert times(session) == [0.0, 1.0, 3.0, 4.0]
     selection.select_all()

@@ -13,7 +13,7 @@ from risorius.app.capture import CaptureOptions
 from risorius.app.capture import capture as film_of
 from risorius.app.capture.drawing import camera_for
 from risorius.app.light_maps import open_light, read_light_map
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.refining.presets import Refinement
 from risorius.app.script.script_file import parse_script
 from risorius.app.viewer import Viewer
@@ -234,7 +234,7 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     assert not viewer.messages.is_error, viewer.messages.text
     found = document(job.target)
     head = next(each for each in found["meshes"] if each["name"] == "head")
-    assert tuple(head["extras"]["targetNames"]) == ARKIT
+    assert tuple(head["extras"]["targetNames"]) == ARKIT_SHAPES
     position = head["primitives"][0]["attributes"]["POSITION"]
     assert found["accessors"][position]["count"] == len(user_head().mesh.vertices)
     assert "teeth_lower" in {each["name"] for each in found["meshes"]}

@@ -11,7 +11,7 @@ from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.script import Script, keyframes
 from risorius.app.script.key_sets import KeyId, KeySet
-from risorius.app.script.keyframes import POSES
+from risorius.app.script.keyframes import POSE_TRACK
 from risorius.app.script.script_file import load_script, parse_script
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.documents.scripts import Question, ScriptCommands
@@ -20,7 +20,7 @@ from risorius.app.viewer.timeline.keys import KeySelection
 
 from .driving import HELLO
 
-JOY = KeyId(POSES, 1.0)
+JOY = KeyId(POSE_TRACK, 1.0)
 
 
 @pytest.fixture
@@ -139,7 +139,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     session.edit(keyframes.moved(session.script, KeySet.from_keys(JOY), 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
-    session.edit(keyframes.moved(session.script, KeySet.from_keys(KeyId(POSES, 1.5)), -0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.from_keys(KeyId(POSE_TRACK, 1.5)), -0.5)[0])
     assert session.values["joy"] == 0.3
 
 
@@ -224,7 +224,7 @@ def test_raised_keys_stay_within_limits(amount, choice):
     assert keyframes.all_keys(script) == keyframes.all_keys(hello)
     for name, before, after in (
         ("blink", hello.tracks["blink"], script.tracks["blink"]),
-        (POSES, hello.posed_channel("joy"), script.posed_channel("joy")),
+        (POSE_TRACK, hello.posed_channel("joy"), script.posed_channel("joy")),
     ):
         for old, new in zip(before.keys, after.keys, strict=True):
             wanted = min(max(old.value + amount, 0.0), 1.0)

@@ -11,7 +11,7 @@ import pytest
 from pytest import approx
 
 from risorius.app.live.live_face import LiveFace, State
-from risorius.app.live.protocols import LOOPBACK, Listening
+from risorius.app.live.protocols import LOOPBACK_ADDRESS, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands
@@ -87,7 +87,7 @@ def hold(viewer, clock, seconds, **channels):
     """Send the same face in every frame, for at least this time and until it leads."""
     face = viewer.context.live.face
     end = clock() + seconds
-    with Sender(LOOPBACK, face.port, "Ada") as sender:
+    with Sender(LOOPBACK_ADDRESS, face.port, "Ada") as sender:
 
         def leads():
             """Whether the face leads and the time is over; otherwise send once more."""
@@ -158,7 +158,7 @@ def test_a_packet_wakes_an_idle_window(viewer):
     face = listen(viewer)
     viewer.messages.text = ""
     assert until(viewer, lambda: viewer.schedule.is_idle)
-    with Sender(LOOPBACK, face.port, "Ada") as sender:
+    with Sender(LOOPBACK_ADDRESS, face.port, "Ada") as sender:
         sender.send({"jawOpen": 0.8})
         viewer.schedule.pause()
         viewer.frame()

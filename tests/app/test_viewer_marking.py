@@ -20,7 +20,7 @@ from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.marking import Marking
-from risorius.app.viewer.marking.marking import FIRST_LANDMARKS, ORDER
+from risorius.app.viewer.marking.marking import FIRST_LANDMARKS, MARKING_ORDER
 from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
@@ -282,13 +282,13 @@ class TestInTheWindow:
         moved = np.subtract(marking.marks.places[number], before.places[number])
         assert norm(moved) > 2.0 * METRES
         assert marking.current == number
-        assert [n for n in ORDER if marking.marks.places[n] != before.places[n]] == [number]
+        assert [n for n in MARKING_ORDER if marking.marks.places[n] != before.places[n]] == [number]
         press_keys(viewer, "ctrl+z")
         assert marking.marks == before
         press_keys(viewer, "ctrl+y")
         assert number in marking.marks.by_hand
         press_keys(viewer, "Right")
-        assert marking.current == ORDER[ORDER.index(number) + 1]
+        assert marking.current == MARKING_ORDER[MARKING_ORDER.index(number) + 1]
         self.mode(viewer).view.camera.orbit(80.0, 0.0)  # hidden in this side view
         press_keys(viewer, "Left")
         settle(viewer)

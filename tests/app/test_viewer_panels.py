@@ -15,7 +15,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
 from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.panels import mechanism
-from risorius.app.viewer.settings import SKINS, Display
+from risorius.app.viewer.settings import SKIN_CHOICES, Display
 from risorius.assets.identities import NAMED_PERSONS
 
 from .driving import (
@@ -149,7 +149,7 @@ def test_levels_that_would_hang_the_window_are_refused(viewer, monkeypatch):
     in_panel(viewer, ("Refiner", "loop"))
     only_open(viewer, "Refinement")
     for typed, reason in (("9", "1 to 4"), ("3", "3 levels would make 129920 triangles")):
-        monkeypatch.setattr(mechanism, "MOST_TRIANGLES", 100_000)
+        monkeypatch.setattr(mechanism, "MOST_SHOWN_TRIANGLES", 100_000)
         click(viewer, "levels")
         press_keys(viewer, "ctrl+a")
         write(viewer, typed)
@@ -273,7 +273,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
     shown = viewer.context.stage.draw_image(viewer.face.view).astype(int)
     assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
     size = shown.shape[1], shown.shape[0]
-    style = render.Style(albedo=SKINS["textured"][1], background=viewer.face.view.background)
+    style = render.Style(albedo=SKIN_CHOICES["textured"][1], background=viewer.face.view.background)
     options = CaptureOptions(size=size, style=style, anatomy=AnatomyView(("muscles",)))
     with Capture(viewer.session.scene, options) as capture:
         capture.camera = viewer.face.view.camera

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from pytest import approx
 
 from risorius.app.script.key_sets import KeyId, KeySet
-from risorius.app.script.keyframes import POSES, on_frame
+from risorius.app.script.keyframes import POSE_TRACK, on_frame
 from risorius.app.script.script_file import load_script, parse_script, script_text
 from risorius.app.viewer import Viewer
 
@@ -34,8 +34,8 @@ from .driving import (
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
 
-JOY = KeyId(POSES, 1.0)
-REST = KeyId(POSES, 3.0)
+JOY = KeyId(POSE_TRACK, 1.0)
+REST = KeyId(POSE_TRACK, 3.0)
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
@@ -52,7 +52,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
-    assert viewer.face.selection.keys == {KeyId(POSES, time)}
+    assert viewer.face.selection.keys == {KeyId(POSE_TRACK, time)}
     assert session.work.name == "own.toml"
     assert session.work.script_is_unsaved
     press_keys(viewer, "ctrl+s")
@@ -98,7 +98,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
     assert session.time == 1.0
     press(viewer, key_at(viewer, JOY), "shift")
     assert viewer.face.selection.keys == {REST}
-    x, y = key_at(viewer, KeyId(POSES, 1.0))
+    x, y = key_at(viewer, KeyId(POSE_TRACK, 1.0))
     press(viewer, (x + 50, y))
     assert not viewer.face.selection.keys
     assert not session.work.unsaved
@@ -111,7 +111,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer):
     right, low = key_at(viewer, KeyId("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     chosen = viewer.face.selection.keys
-    assert {place.track for place in chosen} == {POSES, "blink"}
+    assert {place.track for place in chosen} == {POSE_TRACK, "blink"}
     assert len(chosen) == 5
     drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
     by = session.script.poses[1].time - 1.0
@@ -133,10 +133,10 @@ def test_the_face_becomes_a_key(viewer):
     press_keys(viewer, "shift+k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert session.script.at(2.0)["jaw_open"] == approx(wanted["jaw_open"])
-    assert viewer.face.selection.keys == {KeyId(POSES, 2.0)}
+    assert viewer.face.selection.keys == {KeyId(POSE_TRACK, 2.0)}
     assert session.work.unsaved == "the script"
     press_keys(viewer, "Home")
-    press(viewer, key_at(viewer, KeyId(POSES, 2.0)))
+    press(viewer, key_at(viewer, KeyId(POSE_TRACK, 2.0)))
     assert session.values == approx(wanted)
     click(viewer, "set key")
     assert viewer.messages.is_error and "No control was moved" in viewer.messages.text
@@ -308,7 +308,7 @@ def test_handles_set_slopes(viewer):
     """
     session = viewer.session
     before = session.script
-    viewer.face.selection.keys = KeySet.from_keys(KeyId(POSES, 1.0))
+    viewer.face.selection.keys = KeySet.from_keys(KeyId(POSE_TRACK, 1.0))
     settle(viewer)
     graph = viewer.face.timeline.dope_sheet.graph
     first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from risorius.app.scenes import FaceScene
 from risorius.app.script.key_sets import KeyId, KeySet
-from risorius.app.script.keyframes import POSES, all_keys
+from risorius.app.script.keyframes import POSE_TRACK, all_keys
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer.picture.stage import (
     CALM_FRAMES,
@@ -114,18 +114,18 @@ def test_keys_are_pasted_in_another_script(session, scene):
     """Copied keys do not change with their script, and are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
-    selection.keys = KeySet.from_keys(KeyId(POSES, 1.0), KeyId("blink", 2.12))
+    selection.keys = KeySet.from_keys(KeyId(POSE_TRACK, 1.0), KeyId("blink", 2.12))
     assert "2 keys copied" in str(selection.copy())
     selection.delete()
     session.work.begin_script()
     session.seek(0.5)
     assert selection.copied
     assert selection.paste() == "2 keys copied to 0.50 s"
-    assert selection.keys == {KeyId(POSES, 0.5), KeyId("blink", 1.62)}
-    assert all_keys(session.script) == selection.keys | {KeyId(POSES, 0.0)}
+    assert selection.keys == {KeyId(POSE_TRACK, 0.5), KeyId("blink", 1.62)}
+    assert all_keys(session.script) == selection.keys | {KeyId(POSE_TRACK, 0.0)}
     assert session.script.poses[1].name == "joy"
     session.undo()
-    assert all_keys(session.script) == {KeyId(POSES, 0.0)}
+    assert all_keys(session.script) == {KeyId(POSE_TRACK, 0.0)}
 
 
 def test_detail_falls_once_and_does_not_flicker():

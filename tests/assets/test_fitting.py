@@ -19,7 +19,7 @@ from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops, grid_faces
 from risorius.bench.gaps import eyeballs_of, lid_gaps
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.assets.checks import edge_faces
 from tests.heads import UserHead, closed, user_head, with_card
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
@@ -297,7 +297,7 @@ def test_points_in_another_unit_are_refused(other, tmp_path):
 def test_swapped_sides_are_noticed(other):
     """Landmarks with left and right swapped, the most common mistake, are refused."""
     with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
-        fit(other.mesh, other.landmarks[MIRRORED])
+        fit(other.mesh, other.landmarks[MIRRORED_LANDMARKS])
     mirrored = Mesh(other.mesh.vertices * (-1.0, 1.0, 1.0), other.mesh.faces[:, ::-1])
     with pytest.raises(AssetError, match="or the mesh is mirrored"):
         fit(mirrored, other.landmarks)

@@ -11,7 +11,7 @@ from risorius.assets.fitting.guess import FIRST_LANDMARKS, centred, guess
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.heads import METRES, user_head
 
 JAW = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
@@ -83,7 +83,7 @@ def test_more_points_make_it_better_and_stay():
 @pytest.mark.parametrize(
     ("order", "words"),
     [
-        (MIRRORED, "left and right are swapped"),
+        (MIRRORED_LANDMARKS, "left and right are swapped"),
         (np.roll(np.arange(68), 18), "no face"),
         (np.r_[:36, 45, 37:45, 36, 46:68], "the eyes are swapped, landmarks 36 and 45"),
         (np.zeros(68, int), "one point"),

@@ -14,14 +14,14 @@ from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
 from risorius.assets.data_files import read_arrays
 from risorius.assets.identities import (
-    HAIR,
+    HAIR_NAME,
     Features,
     coloured,
     make_person,
     person_called,
     sample_identity,
 )
-from risorius.assets.identities.hair import CUTS, Fall, Hairline
+from risorius.assets.identities.hair import HAIR_CUTS, Fall, Hairline
 from risorius.assets.identities.long_hair import _reach, _turned
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
@@ -38,22 +38,24 @@ def haired(cut, *, receded=0.0, length=1.0):
     )
 
 
-def hair_of(person, name=HAIR):
+def hair_of(person, name=HAIR_NAME):
     """A part of the person's hair, by default the hair on the scalp."""
     return next(part for part in person.parts if part.name == name)
 
 
-@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("cut", HAIR_CUTS)
 def test_hair_is_a_sound_part(cut):
     """Arrays of hair fit together, and triangles are visible from the side of their normals."""
-    for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
+    for part in [
+        each for each in haired(cut).parts if each.name in (HAIR_NAME, HAIR_NAME + "_tied")
+    ]:
         check_part(part, least_agreeing=0.9)  # at the hairline the lower side of hair turns over
         assert part.bone == "cranium"
         assert part.striation.shape == (len(part.vertices), 6)
         assert np.isfinite(part.striation).all()
 
 
-@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("cut", HAIR_CUTS)
 def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
     """Dense hair is above the skin, and no hair hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
@@ -65,7 +67,7 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
     over = [((each - roots) * part.normals).sum(axis=1)[dense] for each in (part.vertices, tips)]
     assert over[0].min() >= 0.0
     assert np.median(over[1]) > 2.0
-    if not isinstance(CUTS[cut], Fall):  # hangs beside the head
+    if not isinstance(HAIR_CUTS[cut], Fall):  # hangs beside the head
         nearest = cKDTree(person.vertices).query(roots)[1]
         heights = ((roots - person.vertices[nearest]) * part.normals).sum(axis=1)
         assert np.quantile(np.abs(heights[dense]), 0.95) < 4.0
@@ -96,7 +98,7 @@ def test_sideburns_reach_the_ears(head):
 
 def test_bobs_are_cut_off_without_a_veil():
     """Person 28's hair behind the head is dense down to a centimetre above its tips."""
-    hair = next(part for part in person_called(28).parts if part.name == HAIR)
+    hair = next(part for part in person_called(28).parts if part.name == HAIR_NAME)
     dense = hair.striation[:, 5].reshape(51, -1)[15:36]
     tips = hair.vertices.reshape(51, -1, 3)[15:36, -2:]
     assert np.linalg.norm(np.diff(tips, axis=1), axis=2).max() < 12.0
@@ -114,7 +116,7 @@ def test_cropped_hair_has_no_ring_of_light_around_its_whorl():
 @pytest.mark.parametrize("cut", ["tailed", "knotted", "topknot"])
 def test_layers_of_tied_hair_have_no_gap_at_their_seam(cut):
     """First and last strand have equal points, normals and layers; a gap would let light in."""
-    tied = hair_of(haired(cut), HAIR + "_tied")
+    tied = hair_of(haired(cut), HAIR_NAME + "_tied")
     point_count = 40
     for each in (tied.vertices, tied.normals, tied.striation[:, 2:5]):
         np.testing.assert_allclose(each[:point_count], each[-point_count:], atol=1e-6)
@@ -122,14 +124,14 @@ def test_layers_of_tied_hair_have_no_gap_at_their_seam(cut):
 
 def test_a_tail_ends_in_a_point():
     """The end of a tail is thin, so that the hollow between its layers is not visible."""
-    tied = hair_of(haired("tailed"), HAIR + "_tied").vertices.reshape(-1, 40, 3)
+    tied = hair_of(haired("tailed"), HAIR_NAME + "_tied").vertices.reshape(-1, 40, 3)
     assert np.ptp(tied[:, -1], axis=0).max() < 3.0  # [mm]
 
 
 def test_a_ponytail_touches_no_skin_below():
     """A ponytail hangs behind the ears without touching neck and shoulders."""
     person = haired("tailed")
-    tail = hair_of(person, HAIR + "_tied").vertices
+    tail = hair_of(person, HAIR_NAME + "_tied").vertices
     ear = person.anatomy["tragion_left"]
     low = tail[tail[:, 1] < person.vertices[ear, 1] - 50.0]
     assert tail[:, 2].max() < person.vertices[ear, 2] - 50.0
@@ -198,7 +200,7 @@ def test_hair_is_framed_and_labelled():
     clay = AnatomyView()
     for seen in (anatomy.dissect(opened), anatomy.dissect(clay, has_hair=False)):
         assert seen.parts
-        assert not [each for each in seen.parts if each.part.name.startswith(HAIR)]
+        assert not [each for each in seen.parts if each.part.name.startswith(HAIR_NAME)]
 
 
 def test_lobes_of_ears_stay_under_hair_that_falls():

@@ -12,7 +12,7 @@ from pytest import approx
 from risorius import sim
 from risorius.app.cli.value_types import HEAD_NAMES
 from risorius.app.scenes import FaceScene
-from risorius.assets.coarse import COARSE
+from risorius.assets.coarse import COARSE_NAME
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
 from risorius.assets.identities import (
     NAMED_PERSONS,
@@ -240,7 +240,7 @@ def test_upper_lids_cover_a_part_of_the_iris():
 def test_named_persons_are_different_people(head):
     """Named persons differ in sex, tone and age, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED_PERSONS]
-    assert HEAD_NAMES == (*NAMED_PERSONS, COARSE)
+    assert HEAD_NAMES == (*NAMED_PERSONS, COARSE_NAME)
     assert {each.identity.sex for each in people} == set(Sex)
     assert np.ptp([each.identity.age for each in people]) > 30.0
     for i, each in enumerate(people):

@@ -10,7 +10,7 @@ from risorius import assets
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit, fit_head
 from risorius.assets.fitting.landmark_file import (
-    GROUPS,
+    LANDMARK_GROUPS,
     groups_in_disorder,
     landmarks_text,
     read_landmarks,
@@ -39,7 +39,7 @@ def test_right_landmarks_are_accepted(seed, stretch):
     assert not groups_in_disorder(shape(TEMPLATE) * stretch + away, TEMPLATE)
 
 
-@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+@pytest.mark.parametrize("group", LANDMARK_GROUPS, ids=lambda group: group.name)
 @settings(deadline=None, max_examples=10)
 @given(data=st.data())
 def test_a_group_in_another_order_is_named(group, data):
@@ -58,7 +58,7 @@ def _moves(own, order):
     return float(norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
 
 
-@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+@pytest.mark.parametrize("group", LANDMARK_GROUPS, ids=lambda group: group.name)
 def test_a_group_in_disorder_is_refused_in_one_line(group, other):
     """A reversed group, or one with sides swapped, is refused in one line.
 

@@ -5,14 +5,14 @@ import pytest
 from scipy.spatial import cKDTree
 
 from risorius.assets.identities import (
-    COLLARS,
-    FRAMES,
+    COLLAR_BUILDERS,
+    GLASSES_FRAMES,
     SHIRT_COLOURS,
     make_person,
     sample_identity,
     wearing,
 )
-from risorius.assets.identities.wear import GLASSES, glasses
+from risorius.assets.identities.wear import GLASSES_NAME, glasses
 
 
 @pytest.fixture(scope="module")
@@ -21,11 +21,11 @@ def people():
     return [make_person(sample_identity(number)) for number in (3, 7, 12)]
 
 
-@pytest.mark.parametrize("name", FRAMES)
+@pytest.mark.parametrize("name", GLASSES_FRAMES)
 def test_frames_lie_before_eyes_and_off_the_skin(people, name):
     """Rims surround both eyes, temples reach behind the ears, and no rim is within the skin."""
     for person in people:
-        part = glasses(person, FRAMES[name])
+        part = glasses(person, GLASSES_FRAMES[name])
         points = part.vertices.astype(float)
         assert np.isfinite(part.normals).all()
         for eye in person.eyes:
@@ -45,7 +45,7 @@ def test_frames_lie_before_eyes_and_off_the_skin(people, name):
 
 def test_normals_point_out_of_the_frame(people):
     """Faces of frames agree with their normals; otherwise they would be culled."""
-    part = glasses(people[0], FRAMES["oval"])
+    part = glasses(people[0], GLASSES_FRAMES["oval"])
     a, b, c = (part.vertices[part.faces[:, k]].astype(float) for k in range(3))
     across = np.cross(b - a, c - a)
     assert ((across * part.normals[part.faces[:, 0]]).sum(axis=1) > 0.0).all()
@@ -60,8 +60,10 @@ def test_shirts_keep_their_shades(people):
         assert np.array_equal(before.colours, after.colours) != is_shirt
         if is_shirt:
             assert after.colours.mean() > before.colours.mean() + 0.3
-    assert GLASSES not in {part.name for part in wearing(plain, shirt="blue").parts}
-    assert {part.name for part in wearing(plain, shirt="red", frame="round").parts} >= {GLASSES}
+    assert GLASSES_NAME not in {part.name for part in wearing(plain, shirt="blue").parts}
+    assert {part.name for part in wearing(plain, shirt="red", frame="round").parts} >= {
+        GLASSES_NAME
+    }
     assert len(SHIRT_COLOURS) == 8
 
 
@@ -71,7 +73,7 @@ def shirt_of(person):
     return shirt
 
 
-@pytest.mark.parametrize("collar", [name for name in COLLARS if name != "band"])
+@pytest.mark.parametrize("collar", [name for name in COLLAR_BUILDERS if name != "band"])
 def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
     """Collars lie on the unchanged shirt, outside the neck, and their normals face outward."""
     for person in people:

@@ -7,7 +7,7 @@ import PIL.Image
 from pytest import approx
 
 from risorius.bench import landmarks
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.app.command_line import succeeded
 
 FACE = np.random.default_rng(3).uniform(40.0, 60.0, (68, 2))
@@ -79,9 +79,9 @@ def test_a_tracker_s_mesh_gives_all_68_points():
     assert points.shape == (68, 2)
     assert np.isfinite(points).all()
     left = {number for number in range(68) if number not in landmarks.RIGHT_LANDMARKS}
-    assert {int(MIRRORED[number]) for number in left if MIRRORED[number] != number} == (
-        landmarks.RIGHT_LANDMARKS
-    )
+    assert {
+        int(MIRRORED_LANDMARKS[number]) for number in left if MIRRORED_LANDMARKS[number] != number
+    } == (landmarks.RIGHT_LANDMARKS)
 
 
 def test_without_the_detector_one_line_says_so(tmp_path, monkeypatch):

@@ -5,7 +5,7 @@ import pytest
 
 from risorius import assets
 from risorius.bench import quality, subjects
-from risorius.bench.quality import BEST_METHOD, STATIC
+from risorius.bench.quality import BEST_METHOD, STATIC_METHOD
 from risorius.bench.subjects import PosePair, Subject
 from risorius.geometry.closest import closest_points
 from tests.meshes import open_grid
@@ -34,7 +34,7 @@ def rolled_plane():
 def test_scores_of_a_cylinder():
     """Cubic edges follow a cylinder, Loop's surface shrinks; no budget of triangles is exceeded."""
     average = quality.means(scores := quality.measure(rolled_plane()))
-    static = average[STATIC]
+    static = average[STATIC_METHOD]
     loop = average["uniform Loop 16x"]
     assert (static.triangles, loop.triangles) == (1.0, 16.0)
     assert all(score.triangles <= 2.0 for name, score in average.items() if name.endswith(" 2x"))
@@ -55,8 +55,8 @@ def test_error_of_the_truth_is_zero():
     faces = subject.coarse_faces
     poses = {"same": PosePair(pose, pose), "wider": PosePair(pose * [1.1, 1.0, 1.0], pose)}
     found = Subject(faces, faces, PosePair(rest, rest), poses)
-    same, wider = quality.measure(found, methods=[STATIC])
-    assert same.method == STATIC
+    same, wider = quality.measure(found, methods=[STATIC_METHOD])
+    assert same.method == STATIC_METHOD
     assert same.distance < 1e-6
     assert same.picture < 0.1
     assert same.outline == 0.0
@@ -108,15 +108,15 @@ def test_built_in_head(head):
 def test_gains_on_the_built_in_head():
     """In every expression interpolating schemes reduce the error by the intended share."""
     calm = "detail displacement, blended 2x"
-    methods = (STATIC, BEST_METHOD, calm, "cubic twice", "detail twice")
+    methods = (STATIC_METHOD, BEST_METHOD, calm, "cubic twice", "detail twice")
     scores = quality.measure(subjects.built_in(1), ("joy", "blink"), methods=methods)
     for what in ("distance", "picture"):
-        static = {s.expression: getattr(s, what) for s in scores if s.method == STATIC}
+        static = {s.expression: getattr(s, what) for s in scores if s.method == STATIC_METHOD}
         for score in scores:
-            if score.method != STATIC:
+            if score.method != STATIC_METHOD:
                 assert getattr(score, what) < static[score.expression], score
     average = quality.means(scores)
-    before = average[STATIC]
+    before = average[STATIC_METHOD]
     assert average[BEST_METHOD].distance < 0.9 * before.distance
     assert average["cubic twice"].distance < 0.65 * before.distance
     assert average["detail twice"].distance < 0.25 * before.distance

@@ -5,11 +5,14 @@ from click.testing import CliRunner
 
 from risorius.bench import commands, gaps, motion, quality, subjects
 from risorius.bench.gaps import Pose
-from risorius.bench.quality import BEST_METHOD, STATIC, Score
+from risorius.bench.quality import BEST_METHOD, STATIC_METHOD, Score
 
 WHOLE = Pose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
 ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.8)
-NEARER = [Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0), Score(BEST_METHOD, "joy", 2.0, 0.6, 6.0, 9.0)]
+NEARER = [
+    Score(STATIC_METHOD, "joy", 1.0, 1.0, 10.0, 9.0),
+    Score(BEST_METHOD, "joy", 2.0, 0.6, 6.0, 9.0),
+]
 
 
 def run(command, measured, *words):

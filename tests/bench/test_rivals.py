@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from risorius.bench import rivals, subjects
-from risorius.bench.rival_libraries import METHODS, Method
+from risorius.bench.rival_libraries import RIVAL_METHODS, Method
 from tests.app.command_line import succeeded
 from tests.bench.test_quality import rolled_plane
 
@@ -41,7 +41,7 @@ def test_ours_keeps_to_the_triangles_and_comes_nearer(surfaces):
 def test_a_library_that_is_missing_is_one_line(monkeypatch):
     """For all methods of a missing library, one line names its package and how to install it."""
     missing = Method("nobody, smooth", "nobody", "nobody_has_this", None, has_limit=False)
-    monkeypatch.setattr(rivals, "METHODS", [missing, missing])
+    monkeypatch.setattr(rivals, "RIVAL_METHODS", [missing, missing])
     methods, skipped = rivals.available()
     assert methods == list(rivals.OWN_METHODS)
     cure = "install it in the checkout: pip install '.[rivals]'"
@@ -61,7 +61,7 @@ def test_a_mesh_that_is_refused_is_one_line(surfaces):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.title)
+@pytest.mark.parametrize("method", RIVAL_METHODS, ids=lambda method: method.title)
 def test_each_library_that_is_there_refines(method, surfaces):
     """Each installed library makes nearly four times the triangles, near the surface."""
     pytest.importorskip(method.module, reason="needs the extra 'rivals'")
@@ -76,7 +76,7 @@ def test_loop_is_the_same_surface_in_libigl(surfaces):
     """On a closed surface the uniform Loop rule and libigl's matrix make the same points."""
     pytest.importorskip("igl", reason="needs the extra 'rivals'")
     case = surfaces["sphere"]
-    (libigl,) = (method for method in METHODS if method.package == "libigl")
+    (libigl,) = (method for method in RIVAL_METHODS if method.package == "libigl")
     ours = rivals.OWN_METHODS[-1].bind(case.faces, case.rest)(case.positions, 0.0)
     theirs = libigl.bind(case.faces, case.rest)(case.positions, 0.0)
     found = np.unique(np.round(ours[0], 5), axis=0)
@@ -85,7 +85,7 @@ def test_loop_is_the_same_surface_in_libigl(surfaces):
 
 def test_the_command(monkeypatch):
     """The command prints versions, and a table for each surface, also for a head."""
-    monkeypatch.setattr(rivals, "METHODS", METHODS[-1:])
+    monkeypatch.setattr(rivals, "RIVAL_METHODS", RIVAL_METHODS[-1:])
     monkeypatch.setattr(subjects, "built_in", rolled_plane)
     output = succeeded("bench", "rivals", "--seconds", "0.05")
     assert "risorius 0." in output

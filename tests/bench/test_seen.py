@@ -13,7 +13,7 @@ import pytest
 from pytest import approx
 
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.scenes import FaceScene
 from risorius.bench import seen
 from risorius.bench.seen import face_tracker
@@ -23,7 +23,7 @@ MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
 needs_model = pytest.mark.skipif(
     not MODEL.is_file(), reason="FACE_LANDMARKER names no model of the face tracker"
 )
-CALM = dict.fromkeys(ARKIT, 0.05)
+CALM = dict.fromkeys(ARKIT_SHAPES, 0.05)
 
 
 def over(**scores):
@@ -37,7 +37,7 @@ def test_every_shape_is_asked_for_once():
     A pair of shapes, also of jaw and mouth, has a name without side.
     """
     found = dict(seen.bases())
-    assert sorted(name for names in found.values() for name in names) == sorted(ARKIT)
+    assert sorted(name for names in found.values() for name in names) == sorted(ARKIT_SHAPES)
     assert found["eyeBlink"] == ("eyeBlinkLeft", "eyeBlinkRight")
     assert found["jawLeft, Right"] == ("jawLeft", "jawRight")
     assert found["jawOpen"] == ("jawOpen",)
@@ -81,7 +81,7 @@ def test_the_tracker_sees_an_open_jaw():
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with face_tracker(MODEL) as tracker:
         assert tracker(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
-        with Capture(FaceScene(), CaptureOptions(size=seen.SIZE)) as studio:
+        with Capture(FaceScene(), CaptureOptions(size=seen.PICTURE_SIZE)) as studio:
             neutral = seen.pose_scores(tracker, studio, ())
             opened = seen.pose_scores(tracker, studio, ("jawOpen",))
         own, _, score = seen.compared(opened, neutral, ("jawOpen",))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.names import ARKIT_SHAPES
 from tests.app.command_line import succeeded
 from tests.app.glb_player import Player
 
@@ -30,7 +30,7 @@ def test_babylon_has_the_shapes_by_name(tmp_path):
     program = Path(__file__).with_name("in_babylon.mjs")
     command = ["node", str(program), str(modules), str(avatar), "skin", *shapes]
     found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    assert tuple(found["names"]) == ARKIT
+    assert tuple(found["names"]) == ARKIT_SHAPES
     assert {"eye_left", "eye_right", "cranium"} <= set(found["nodes"])
     player = Player(avatar)
     rest = player.attribute("skin", "POSITION")

@@ -168,7 +168,7 @@ def test_every_setting_of_the_looks_is_an_option():
     (looks,) = [
         node.value
         for node in ast.parse(source).body
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "LOOKS"
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "LOOK_OPTIONS"
     ]
     for options in ast.literal_eval(looks).values():
         refine.create("kahler", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], **options)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings.names import ANGLES, ARKIT, LARGEST_VALUE, VISEMES
+from risorius.app.recordings.names import ANGLE_NAMES, ARKIT_SHAPES, LARGEST_VALUE, VISEME_NAMES
 from risorius.app.recordings.reading import is_recording, read_take
 from tests.app.recording_files import live_link, openface, pyfeat, table
 
@@ -49,8 +49,8 @@ def check(take):
     for name, values in take.channels.items():
         assert values.shape == take.times.shape, name
         assert np.isfinite(values).all(), name
-        if name not in ANGLES:
-            assert name in (*ARKIT, *VISEMES) or name.startswith("AU"), name
+        if name not in ANGLE_NAMES:
+            assert name in (*ARKIT_SHAPES, *VISEME_NAMES) or name.startswith("AU"), name
             assert np.abs(values).max() <= LARGEST_VALUE, name  # trackers overshoot a little
     assert all(note.endswith(".") for note in take.notes)
 

@@ -171,7 +171,7 @@ def test_shaders_take_eight_buffers():
     """
     bindings = re.findall(r"std430, binding = (\d+)", frames.shader_text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
-    assert tables.GROUP <= 1024
+    assert tables.GROUP_SIZE <= 1024
 
 
 @pytest.mark.parametrize(

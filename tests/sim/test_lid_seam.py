@@ -8,12 +8,12 @@ from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
-from risorius.sim.lid_edges import COLUMN_COUNT, side_with_edges
+from risorius.sim.lid_edges import LID_COLUMNS, side_with_edges
 from risorius.sim.lids import raised_at_corners
 from risorius.sim.skull import Eyeball
 from tests.sim.poses import both_sides, settled_displacement
 
-WHERE = np.linspace(0.0, 1.0, COLUMN_COUNT)
+WHERE = np.linspace(0.0, 1.0, LID_COLUMNS)
 
 
 def test_no_step_below_a_corner_above_the_lower_lid():

@@ -22,8 +22,8 @@ from ...errors import UserError
 from ...export.formats import ExportRequest, check_request, export, format_for
 from ...files import check_apart, check_file
 from ...pictures import save_png
-from ...recordings.names import ARKIT
-from ...refining.presets import STATIC, Refinement
+from ...recordings.names import ARKIT_SHAPES
+from ...refining.presets import STATIC_REFINER, Refinement
 from ...rig.avatar import RigRequest
 from ...rig.writing import make_avatar
 from ...text import as_text
@@ -33,7 +33,7 @@ from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import SceneView, Stage, style_of
 from ..session.session import Session
-from ..settings import FRAMES_KIND, KINDS, TONES, ExportChoices, Kind, Settings
+from ..settings import EXPORT_KINDS, FRAMES_KIND, TONE_ANGLES, ExportChoices, Kind, Settings
 from .file_dialogs import FileDialogs
 
 
@@ -65,7 +65,7 @@ class Exporter:
     @property
     def kind(self) -> Kind:
         """The chosen kind of file."""
-        return KINDS[self.choices.kind]
+        return EXPORT_KINDS[self.choices.kind]
 
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
@@ -110,7 +110,7 @@ class Exporter:
         request = RigRequest(adds_parts=True, progress=False)
         work = partial(make_avatar, head, target, request, _discard_line)
         written = 8  # comparing and writing take as long as this number of shapes
-        self.job = ExportJob(target, Task(work, len(ARKIT) + written, wake_up))
+        self.job = ExportJob(target, Task(work, len(ARKIT_SHAPES) + written, wake_up))
         return None
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
@@ -120,7 +120,7 @@ class Exporter:
         display = self._view.display
         is_clear = choices.is_transparent and self.kind.can_be_transparent
         is_compared = display.compare != "off"
-        static = Refinement(refiner=STATIC)
+        static = Refinement(refiner=STATIC_REFINER)
         is_refined = display.is_refined or is_compared
         return CaptureOptions(
             choices.size,
@@ -129,7 +129,7 @@ class Exporter:
             (display.refinement_beside,) if is_compared else (),
             camera=view.camera.copy(),
             style=style_of(display, None if is_clear else view.background),
-            tone=TONES[display.tone],
+            tone=TONE_ANGLES[display.tone],
             anatomy=display.anatomy,
             head=head,
             is_alive=self._settings.is_alive,
@@ -234,7 +234,7 @@ class ExportDialog:
 
     def _draw_motion(self, choices: ExportChoices) -> None:
         """Draw the choices of an export: kind, size and rate."""
-        titles = {name: kind.title for name, kind in KINDS.items()}
+        titles = {name: kind.title for name, kind in EXPORT_KINDS.items()}
         choices.kind = self._pick("Write", choices.kind, titles)
         kind = self._exporter.kind
         if kind.is_drawn:

@@ -24,7 +24,7 @@ from .scripts import SOUND_SUFFIXES, ScriptCommands
 
 MESH_SUFFIXES = tuple(f".{name}" for name in MESH_FORMATS)
 LANDMARKS_SUFFIX = ".json"
-SUFFIXES = {"mesh": MESH_SUFFIXES, "sound": SOUND_SUFFIXES, "light": LIGHT_SUFFIXES}
+SUFFIXES_OF_KIND = {"mesh": MESH_SUFFIXES, "sound": SOUND_SUFFIXES, "light": LIGHT_SUFFIXES}
 
 
 def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
@@ -36,7 +36,7 @@ def files_by_kind(paths: Sequence[Path]) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for path in paths:
         end = Path(path.name.lower().removesuffix(".gz")).suffix  # reading reports a wrong .gz
-        kind = next((each for each, ends in SUFFIXES.items() if end in ends), "script")
+        kind = next((each for each, ends in SUFFIXES_OF_KIND.items() if end in ends), "script")
         if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
         if kind in found:

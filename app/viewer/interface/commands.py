@@ -11,8 +11,12 @@ from ..messages import Messages, Task
 from .gui import Gui, colour
 from .widgets import button, muted
 
-_MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
-_KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
+KEY_OF_MODIFIER = {
+    "Ctrl": imgui.Key.mod_ctrl,
+    "Shift": imgui.Key.mod_shift,
+    "Alt": imgui.Key.mod_alt,
+}
+KEY_OF_NAME = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          if imgui.Key.tab <= key < imgui.Key.gamepad_start}  # fmt: skip
 
 
@@ -63,7 +67,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 def chord(key: str) -> int:
     """Return imgui's key chord: a key with its modifiers, as one number."""
     *modifiers, last = key.split("+")
-    return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
+    return sum((int(KEY_OF_MODIFIER[each]) for each in modifiers), start=int(KEY_OF_NAME[last]))
 
 
 class MenuBar:

@@ -27,13 +27,13 @@ from ...text import as_text
 
 import glfw  # isort: skip - must follow imgui_bundle, see above
 
-FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
+FONT_FILE = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
 # Buttons of the mouse.
-LEFT = 0
-RIGHT = 1
-MIDDLE = 2
-MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
+LEFT_BUTTON = 0
+RIGHT_BUTTON = 1
+MIDDLE_BUTTON = 2
+MODIFIER_KEYS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Flags of a note over the picture: it has the size of its text, and takes no keyboard focus.
 NOTE_FLAGS = (
     imgui.WindowFlags_.always_auto_resize
@@ -108,8 +108,8 @@ class Gui:
         self._dressed: object = None
         io = imgui.get_io()
         io.set_ini_filename("")  # settings.py stores the panel's width and folds
-        if FONT.exists():
-            io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
+        if FONT_FILE.exists():
+            io.fonts.add_font_from_file_ttf(str(FONT_FILE), FONT_SIZE)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
@@ -174,7 +174,7 @@ class Gui:
 
         `turns` answers these events in separate frames, so a key keeps its modifiers.
         """
-        is_modifier = key in MODIFIERS
+        is_modifier = key in MODIFIER_KEYS
         if action == glfw.PRESS or (is_modifier and action == glfw.RELEASE):
             count = self._context.input_events_queue.size()
             self._presses.append((count, None if is_modifier else key))

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ...control_names import readable, sentence
 from ...text import as_text
-from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
+from .gui import LEFT_BUTTON, RIGHT_BUTTON, Gui, colour, em, ink_of
 
 # Colours of the knob and number of imgui's sliders; bars replace both.
 HIDDEN_COLOURS = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
@@ -51,7 +51,9 @@ def slider(
     imgui.push_style_var(imgui.StyleVar_.grab_min_size, 1.0)
     for index in hidden:
         imgui.push_style_color(index, 0)
-    io.key_ctrl = has_ctrl or imgui.is_mouse_double_clicked(LEFT)  # imgui needs Ctrl for typing
+    io.key_ctrl = has_ctrl or imgui.is_mouse_double_clicked(
+        LEFT_BUTTON
+    )  # imgui needs Ctrl for typing
     flags = imgui.SliderFlags_.always_clamp
     is_changed, now = imgui.slider_float(label, value, *limits, f"%.{digits}f", flags)
     io.key_ctrl = has_ctrl
@@ -62,7 +64,7 @@ def slider(
     is_hovered = imgui.is_item_hovered()
     if not is_typed:
         _draw_bar(gui, now, limits, mark, digits)
-    is_right_clicked = is_hovered and imgui.is_mouse_clicked(RIGHT)
+    is_right_clicked = is_hovered and imgui.is_mouse_clicked(RIGHT_BUTTON)
     if is_right_clicked and not has_menu:
         return SliderState(neutral, neutral != value, True, True)
     is_pointed = is_hovered or imgui.is_item_active()

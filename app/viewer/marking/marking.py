@@ -33,7 +33,7 @@ from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
 from ..session.document import History
 
-INNER_LIPS = range(60, 68)
+INNER_LIP_LANDMARKS = range(60, 68)
 
 Place = tuple[float, float, float]  # in the mesh's own coordinates
 Colour = tuple[float, float, float]  # sRGB
@@ -60,7 +60,7 @@ def _row(first: int, last: int, *more: int) -> tuple[int, ...]:
     return (*range(first, last + 1), *more)
 
 
-GROUPS = (  # in the order of marking
+MARKING_GROUPS = (  # in the order of marking
     Group("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42))),
     Group("outer lips", (0.86, 0.18, 0.26), (_row(48, 59, 48),)),
     Group("inner lips", (0.93, 0.76, 0.20), (_row(60, 67, 60),)),
@@ -68,8 +68,8 @@ GROUPS = (  # in the order of marking
     Group("brows", (0.58, 0.36, 0.84), (_row(17, 21), _row(22, 26))),
     Group("jaw line", (0.16, 0.48, 0.88), (_row(0, 16),)),
 )
-GROUP_OF = {number: group for group in GROUPS for number in group.numbers}
-ORDER = tuple(GROUP_OF)
+GROUP_OF = {number: group for group in MARKING_GROUPS for number in group.numbers}
+MARKING_ORDER = tuple(GROUP_OF)
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class Marking:
         if not self.is_upright:
             self._upright = upright
             self._place(upright)
-            self.current = ORDER[0]
+            self.current = MARKING_ORDER[0]
 
     def seen(self, numbers: Iterable[int]) -> tuple[Floats64, Floats64]:
         """Return the marked points in the picture's space, (n, 3), and normals of the skin.
@@ -177,7 +177,7 @@ class Marking:
         nearest = range(1, min(neighbour_count, len(self.positions)) + 1)
         normals = self._normals[self._nearest.query(points, nearest)[1]]
         if self.is_upright:  # inner lips face up or down, but are visible from ahead
-            normals[[number in INNER_LIPS for number in chosen]] = (0.0, 0.0, 1.0)
+            normals[[number in INNER_LIP_LANDMARKS for number in chosen]] = (0.0, 0.0, 1.0)
         return points, normals
 
     # Changes of the marks
@@ -209,7 +209,9 @@ class Marking:
 
     def step(self, step: int) -> None:
         """Go to the next landmark in the order of marking, or with -1 to the previous landmark."""
-        self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
+        self.current = MARKING_ORDER[
+            (MARKING_ORDER.index(self.current) + step) % len(MARKING_ORDER)
+        ]
 
     def undo(self, changes: int = 1) -> None:
         """Undo this many changes, including turns of the mesh; -1 redoes one change."""

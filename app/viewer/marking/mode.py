@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from risorius.assets.fitting.guess import axes_turned
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 
 from ..context import ApplicationContext
 from ..documents.file_drop import LANDMARKS_SUFFIX
@@ -112,7 +112,7 @@ class MarkingMode:
         camera = self.view.camera
         if number not in self.view.places():
             side_view_yaw = 40.0  # [degrees], for a landmark that the front view hides
-            aside = 0.0 if MIRRORED[number] == number else side_view_yaw
+            aside = 0.0 if MIRRORED_LANDMARKS[number] == number else side_view_yaw
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
             camera.pitch = 0.0
 

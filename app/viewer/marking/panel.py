@@ -10,17 +10,17 @@ from imgui_bundle import imgui
 
 from risorius import assets
 from risorius.assets.fitting.guess import FIRST_LANDMARKS
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import MIRRORED_LANDMARKS
 
 from ..interface.commands import Command, MenuBar, command_button
 from ..interface.gui import Gui, colour, em, fixed_panel, ink_of
 from ..interface.widgets import muted
 from ..messages import Messages
-from .marking import GROUP_OF, GROUPS, Marking
+from .marking import GROUP_OF, MARKING_GROUPS, Marking
 from .picture import MarkingView, ScreenPoint
 
-DARK = (0.08, 0.08, 0.10)
-WHITE = (1.0, 1.0, 1.0)
+DARK_INK = (0.08, 0.08, 0.10)
+WHITE_INK = (1.0, 1.0, 1.0)
 POINT_NAMES = {  # names of the first points
     **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
     **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
@@ -71,12 +71,12 @@ class MarkingPanel:
         pen.push_clip_rect((left, top), (display.x, display.y))
         _draw_points(pen, at, current, joined=marks.is_complete)
         for number in marks.guessed & at.keys():
-            pen.add_circle_filled(at[number], em(0.12), ink_of(WHITE))
+            pen.add_circle_filled(at[number], em(0.12), ink_of(WHITE_INK))
         for number in at.keys() & {*GROUP_OF[current].numbers}:
             x = at[number][0] + em(0.45)
             y = at[number][1] - em(0.95)
-            pen.add_text((x + em(0.07), y + em(0.07)), ink_of(DARK), str(number))
-            pen.add_text((x, y), ink_of(WHITE), str(number))
+            pen.add_text((x + em(0.07), y + em(0.07)), ink_of(DARK_INK), str(number))
+            pen.add_text((x, y), ink_of(WHITE_INK), str(number))
         pen.pop_clip_rect()
 
     def _draw_task(self) -> None:
@@ -92,7 +92,9 @@ class MarkingPanel:
             name = f"Point {number}"
         imgui.text_colored(colour(self._gui.theme.accent), step)
         imgui.text_wrapped(name)
-        side = 0.0 if MIRRORED[number] == number else float(np.sign(self._guide[number, 0]))
+        side = (
+            0.0 if MIRRORED_LANDMARKS[number] == number else float(np.sign(self._guide[number, 0]))
+        )
         muted(self._gui, SIDE_NAMES[side])
         imgui.spacing()
         first_advice = (
@@ -137,13 +139,13 @@ def _draw_points(
     pen: imgui.ImDrawList, at: Mapping[int, ScreenPoint], current: int, *, joined: bool
 ) -> None:
     """Draw points with a dark border, the lines of groups, and a ring around the current point."""
-    for group in GROUPS if joined else ():
+    for group in MARKING_GROUPS if joined else ():
         for a, b in (pair for line in group.lines for pair in pairwise(line)):
             if a in at and b in at:
                 pen.add_line(at[a], at[b], ink_of(group.colour, 0.75), em(0.1))
     for number, point in at.items():
         radius = em(0.34 if number == current else 0.22)
-        pen.add_circle_filled(point, radius + em(0.08), ink_of(DARK))
+        pen.add_circle_filled(point, radius + em(0.08), ink_of(DARK_INK))
         pen.add_circle_filled(point, radius, ink_of(GROUP_OF[number].colour))
     if current in at:
-        pen.add_circle(at[current], em(0.62), ink_of(WHITE), 0, em(0.12))
+        pen.add_circle(at[current], em(0.62), ink_of(WHITE_INK), 0, em(0.12))

@@ -12,8 +12,8 @@ from imgui_bundle import imgui
 from risorius import render
 
 from ...passes.camera import CameraLabels
-from ...refining.presets import STATIC
-from ..interface.gui import LEFT, em
+from ...refining.presets import STATIC_REFINER
+from ..interface.gui import LEFT_BUTTON, em
 from ..messages import Messages
 from ..picture.mouse import CameraMouse
 from ..picture.stage import SceneView, Stage
@@ -40,7 +40,7 @@ class MarkingView(SceneView):
 
     @property
     def display(self) -> Display:
-        return Display(skin="clay", refiner=STATIC)
+        return Display(skin="clay", refiner=STATIC_REFINER)
 
     @property
     def state(self) -> object:
@@ -98,7 +98,7 @@ class MarkingMouse(CameraMouse):
         super()._drag(io)
 
     def _release(self, io: Any) -> None:
-        is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT)
+        is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT_BUTTON)
         is_click = is_click and not self._has_moved(io)
         if is_click and not self._put(io):
             self._messages.show(

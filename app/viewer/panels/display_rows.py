@@ -15,14 +15,14 @@ from ..messages import Message
 from ..settings import Display, switch
 
 # Fields of the display, by the labels of their rows.
-FIELDS = {
+FIELD_OF_ROW = {
     "Refine": "is_refined",
     "Skin tone": "tone",
     "Hair": "has_hair",
     "Colour by splits": "splits",
     "Wires of splits": "wires",
 }
-FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
+FIELD_OF_ROW |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 
 
 class DisplayRows(LabelledRows):
@@ -36,7 +36,7 @@ class DisplayRows(LabelledRows):
     def switch(self, label: str) -> None:
         """Draw a checkbox for a field of the display."""
         display = self._settings.display
-        name = FIELDS[label]
+        name = FIELD_OF_ROW[label]
         self.check(label, getattr(display, name), partial(switch, display, name))
 
     def check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
@@ -50,7 +50,7 @@ class DisplayRows(LabelledRows):
     def pick(self, label: str, choices: Sequence[str]) -> None:
         """Draw a row with a list for a field of the display."""
         display = self._settings.display
-        name = FIELDS[label]
+        name = FIELD_OF_ROW[label]
         self.choice_row(label, getattr(display, name), choices, partial(setattr, display, name))
 
     def choice_row(

@@ -14,7 +14,7 @@ from operator import or_
 from imgui_bundle import imgui
 
 from ...control_names import (
-    OPPOSITES,
+    ONE_MOTION_BASES,
     is_found,
     readable,
     split_side,
@@ -86,7 +86,7 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
                 rows.append(Row(name, (name,)))
             else:
                 rows.append(Row.of_sides(name, sides, name, values, linked))
-        elif base in OPPOSITES or twin not in known:
+        elif base in ONE_MOTION_BASES or twin not in known:
             rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
             whole = base if values.get(base) else ""  # set by a script, and in no group

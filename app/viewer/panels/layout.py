@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from ..context import ApplicationContext
 from ..interface.commands import MenuBar
-from ..interface.gui import LEFT, NOTE_FLAGS, Gui, colour, em, fixed_panel
+from ..interface.gui import LEFT_BUTTON, NOTE_FLAGS, Gui, colour, em, fixed_panel
 from ..messages import Messages
 from ..picture.stage import SceneView
 from ..timeline.timeline import Timeline
@@ -71,7 +71,7 @@ class Layout:
         below = round(self._timeline.height())
         with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
             is_other = round(imgui.get_window_width()) != left
-            if is_other and imgui.is_mouse_down(LEFT):  # its edge is being dragged
+            if is_other and imgui.is_mouse_down(LEFT_BUTTON):  # its edge is being dragged
                 self._settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
         with fixed_panel("Time", (left, display.y - below), (display.x - left, below)):

@@ -9,17 +9,17 @@ from imgui_bundle import imgui
 
 from ...control_names import sentence
 from ...live.live_face import LiveFace, State
-from ...live.protocols import ANY_ADDRESS, LOOPBACK, PROTOCOLS
+from ...live.protocols import ANY_ADDRESS, LOOPBACK_ADDRESS, PROTOCOLS
 from ...recordings.calibration import HIGHEST_GAIN
-from ...recordings.names import ANGLES
+from ...recordings.names import ANGLE_NAMES
 from ..context import ApplicationContext
 from ..interface.commands import Command, command_button
 from ..interface.gui import colour
 from ..interface.widgets import LabelledRows, hint, muted
 
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
-COMPUTERS = {"this computer only": LOOPBACK, "the whole network": ANY_ADDRESS}
-HINTS = {
+ADDRESS_OF_CHOICE = {"this computer only": LOOPBACK_ADDRESS, "the whole network": ANY_ADDRESS}
+LIVE_HINTS = {
     "Protocol": "of the sender; Live Link Face is an app of an iPhone, "
     "VMC is sent by most programs for avatars",
     "Listen to": "a phone needs the whole network; every computer in it can then move this face, "
@@ -38,7 +38,7 @@ class LivePanel:
         self._messages = app.messages
         self._live = app.live
         self._commands = commands
-        self._rows = LabelledRows(app.gui, share=0.38, hints=HINTS)
+        self._rows = LabelledRows(app.gui, share=0.38, hints=LIVE_HINTS)
 
     def draw(self) -> None:
         """Draw the panel's content inside its window."""
@@ -78,11 +78,11 @@ class LivePanel:
         chosen = rows.choose("Protocol", wanted.protocol.title, by_title)
         if chosen is not None:
             wanted = replace(wanted, kind=by_title[chosen], port=None)
-        names = {address: name for name, address in COMPUTERS.items()}
+        names = {address: name for name, address in ADDRESS_OF_CHOICE.items()}
         here = names.get(wanted.address, wanted.address)
-        chosen = rows.choose("Listen to", here, dict.fromkeys((*COMPUTERS, here)))
+        chosen = rows.choose("Listen to", here, dict.fromkeys((*ADDRESS_OF_CHOICE, here)))
         if chosen is not None:
-            wanted = replace(wanted, address=COMPUTERS.get(chosen, wanted.address))
+            wanted = replace(wanted, address=ADDRESS_OF_CHOICE.get(chosen, wanted.address))
         rows.begin("Port")
         is_changed, port = imgui.input_int("##port", wanted.chosen_port, 0)
         self._gui.remember("Port")
@@ -108,7 +108,7 @@ class LivePanel:
         taken = face.calibration.apply(face.channels)
         for name, value in sorted(taken.items()):
             self._rows.begin(name)
-            if name in ANGLES:
+            if name in ANGLE_NAMES:
                 imgui.text(f"{value:.1f} degrees")
             else:
                 imgui.progress_bar(min(max(value, 0.0), 1.0), (-1.0, 0.0), f"{value:.2f}")
@@ -139,7 +139,7 @@ def advice_in_words(face: LiveFace, own_address: str) -> str:
     if face.state is not State.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"
-    if face.listening.address == LOOPBACK:
+    if face.listening.address == LOOPBACK_ADDRESS:
         trial = "; without one, type: risorius send" * (face.listening.kind == "livelink")
         return f"for a phone, listen to the whole network{trial}"
     if face.listening.address == ANY_ADDRESS and own_address:

@@ -12,20 +12,26 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
-from ...anatomy import OPACITY, SIDE_SIGNS, STRUCTURES
+from ...anatomy import SIDE_SIGNS, SKIN_OPACITY, STRUCTURES
 from ...control_names import readable
 from ...errors import UserError
-from ...refining.presets import PRESETS, STATIC, STATIC_LABEL, THRESHOLDS, words_of_presets
-from ...refining.refiners import DETAIL, OPTION_MARK, can_detail, options_of
+from ...refining.presets import (
+    PRESETS,
+    STATIC_LABEL,
+    STATIC_REFINER,
+    THRESHOLD_OPTIONS,
+    words_of_presets,
+)
+from ...refining.refiners import DETAIL_SCHEME, OPTION_MARK, can_detail, options_of
 from ...text import counted
 from ..context import ApplicationContext
 from ..interface.widgets import button, heading, muted
-from ..session.physics import PHASES
-from ..settings import COMPARISONS, SKINS, Display
+from ..session.physics import PHASE_NAMES
+from ..settings import COMPARISON_NAMES, SKIN_CHOICES, Display
 from .display_rows import DisplayRows
 
 # Hints that appear while the mouse is on a label or its item.
-HINTS = {
+MECHANISM_HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
     "Look": "smooth: the best picture; paper: the paper's own rule ([Paper's look]). A look sets "
     "the refiner and all of its options",
@@ -44,9 +50,9 @@ HINTS = {
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
-NUMBERS = ("integer", "number")  # kinds of options that are numbers
+NUMBER_KINDS = ("integer", "number")  # kinds of options that are numbers
 # Chosen: a second for each frame on software OpenGL, so that the number can be lowered again.
-MOST_TRIANGLES = 600_000
+MOST_SHOWN_TRIANGLES = 600_000
 
 
 class MechanismPanel:
@@ -59,7 +65,7 @@ class MechanismPanel:
         self._view = app.view
         self._messages = app.messages
         self._times = app.times
-        self._rows = DisplayRows(app, HINTS)
+        self._rows = DisplayRows(app, MECHANISM_HINTS)
         self._before_reset: Display | None = None
 
     @property
@@ -109,12 +115,12 @@ class MechanismPanel:
         self._rows.choice_row("Look", look, tuple(PRESETS), display.choose_preset)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
         for name, option in self._options().items():
-            if option.kind in NUMBERS and (name not in THRESHOLDS or has_thresholds):
+            if option.kind in NUMBER_KINDS and (name not in THRESHOLD_OPTIONS or has_thresholds):
                 self._draw_option(name, option)
-        self._rows.pick("Compare", COMPARISONS)
+        self._rows.pick("Compare", COMPARISON_NAMES)
         if display.compare != "off":
-            looks = {STATIC_LABEL: STATIC} | {look: look for look in PRESETS}
-            beside = STATIC_LABEL if display.beside == STATIC else display.beside
+            looks = {STATIC_LABEL: STATIC_REFINER} | {look: look for look in PRESETS}
+            beside = STATIC_LABEL if display.beside == STATIC_REFINER else display.beside
             put = lambda label: setattr(display, "beside", looks[label])  # noqa: E731
             self._rows.choice_row("Beside", beside, tuple(looks), put)
         base = len(stage.scene.faces)
@@ -127,11 +133,11 @@ class MechanismPanel:
     def _draw_advanced(self) -> None:
         """Draw rows for the refiner and its options that are not numbers; looks set these well."""
         scene = self._stage.scene
-        names = [name for name in refine.refiners.available() if name != STATIC]
+        names = [name for name in refine.refiners.available() if name != STATIC_REFINER]
         put = partial(self._display.choose_refiner, scene)
         self._rows.choice_row("Refiner", self._display.refiner_on(scene), names, put)
         for name, option in self._options().items():
-            if option.kind not in NUMBERS:
+            if option.kind not in NUMBER_KINDS:
                 self._draw_option(name, option)
         skin = scene.skin
         if skin.fine_shape is not None or skin.ambient_occlusion is not None:
@@ -177,7 +183,7 @@ class MechanismPanel:
                 _keep_in_order(stored, name, slid, {**self._defaults(), **of_look})
         elif option.kind == "word":
             has_finer = can_detail(scene)
-            allowed = [word for word in choices_of(name) if word != DETAIL or has_finer]
+            allowed = [word for word in choices_of(name) if word != DETAIL_SCHEME or has_finer]
             if allowed:
                 self._rows.choice_row(label, str(value), allowed, put)
         else:
@@ -193,7 +199,9 @@ class MechanismPanel:
         self._rows.pick("Shading", [shading.value for shading in render.Shading])
         skin = self._stage.scene.skin
         is_textured = skin.albedo is not None
-        possible = [name for name, (is_picture, _) in SKINS.items() if is_textured >= is_picture]
+        possible = [
+            name for name, (is_picture, _) in SKIN_CHOICES.items() if is_textured >= is_picture
+        ]
         present = display.skin if display.skin in possible else possible[0]
         self._rows.choice_row("Skin", present, possible, partial(setattr, display, "skin"))
         if self._stage.scene.skin.wrinkles is not None:
@@ -215,14 +223,14 @@ class MechanismPanel:
             now = display.skin_opacity
             label = "Skin opacity"
             name = "skin_opacity"
-            display.skin_opacity = self._rows.slider_row(label, name, now, (0.0, 1.0), OPACITY)
+            display.skin_opacity = self._rows.slider_row(label, name, now, (0.0, 1.0), SKIN_OPACITY)
             self._rows.pick("Dissect", tuple(SIDE_SIGNS))
 
     def _draw_times(self) -> None:
         """Draw the median times of each phase of the paper's Figure 1, and of whole frames."""
         times = self._times
         steps = [each for each in times.steps if each]
-        phases = {readable(name): times.median(name) for name in PHASES}
+        phases = {readable(name): times.median(name) for name in PHASE_NAMES}
         rest = max(times.frame - sum(phases.values()), 0.0)
         rows = {**phases, "Panels and pauses": rest, "Frame": times.frame}
         for label, milliseconds in rows.items():
@@ -247,10 +255,10 @@ def _check_count(name: str, option: refine.Option, count: int, face_count: int) 
     except ValueError as error:
         raise UserError(str(error)) from None
     triangle_count = face_count * 4**count
-    if name == "levels" and triangle_count > MOST_TRIANGLES:  # those of all edges
+    if name == "levels" and triangle_count > MOST_SHOWN_TRIANGLES:  # those of all edges
         raise UserError(
             f"{count} levels would make {triangle_count} triangles of {face_count}; the window "
-            f"draws {MOST_TRIANGLES} at most"
+            f"draws {MOST_SHOWN_TRIANGLES} at most"
         )
 
 

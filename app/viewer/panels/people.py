@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from risorius.assets.identities import NAMED_PERSONS
 
-from ...scenes import BUILT_IN, COARSE, OWN_HEAD, head_in_words
+from ...scenes import BUILT_IN, COARSE_NAME, OWN_HEAD, head_in_words
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.gui import em, ink_of
@@ -29,7 +29,7 @@ class PeopleList:
     def draw(self, called: str) -> None:
         """Draw the row. called: name or number of the visible head."""
         present = int(called) if called.isdecimal() else called
-        people: list[int | str] = [BUILT_IN, COARSE, *NAMED_PERSONS]
+        people: list[int | str] = [BUILT_IN, COARSE_NAME, *NAMED_PERSONS]
         people += range(20)  # and persons without names
         if present not in (*people, OWN_HEAD):
             people.append(present)

@@ -8,7 +8,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from risorius import render
-from risorius.assets.identities import HAIR
+from risorius.assets.identities import HAIR_NAME
 
 from ...control_names import readable
 from ...light_maps import LIGHT_SUFFIXES
@@ -17,12 +17,12 @@ from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.widgets import choose
 from ..messages import Message
-from ..settings import BACKGROUNDS, TONES
+from ..settings import BACKGROUND_CHOICES, TONE_ANGLES
 from .display_rows import DisplayRows
 from .people import PeopleList
 
 OTHER_MAP = "Map ..."
-HINTS = {
+SCENE_HINTS = {
     "Light": "moves with the camera; the shadow follows the key. Map: a file .hdr or .exr with the "
     "light from all directions",
     "Background": "theme: of the window's colours; map: the light map behind the head, of "
@@ -43,7 +43,7 @@ class ScenePanel:
         self._stage = app.stage
         self._view = app.view
         self._file_drop = file_drop
-        self._rows = DisplayRows(app, HINTS)
+        self._rows = DisplayRows(app, SCENE_HINTS)
         self._people = PeopleList(app, file_drop, self._rows)
 
     def draw(self) -> None:
@@ -52,7 +52,7 @@ class ScenePanel:
         rows = self._rows
         scene = self._stage.scene
         self._draw_lights()
-        rows.pick("Background", tuple(BACKGROUNDS))
+        rows.pick("Background", tuple(BACKGROUND_CHOICES))
         camera = self._view.camera
         widest = 5.0, 90.0  # [degrees]
         now = camera.field_of_view
@@ -64,8 +64,8 @@ class ScenePanel:
         if scene.called:
             self._people.draw(scene.called)
         if scene.skin.in_tone is not None:
-            rows.pick("Skin tone", tuple(TONES))
-        if any(part.name.startswith(HAIR) for part in scene.parts):
+            rows.pick("Skin tone", tuple(TONE_ANGLES))
+        if any(part.name.startswith(HAIR_NAME) for part in scene.parts):
             rows.switch("Hair")
         imgui.end_child()
 

@@ -15,7 +15,7 @@ from imgui_bundle import imgui
 
 from risorius.geometry.arrays import Floats64
 
-from ..interface.gui import LEFT, MIDDLE, RIGHT, em
+from ..interface.gui import LEFT_BUTTON, MIDDLE_BUTTON, RIGHT_BUTTON, em
 from ..messages import Messages
 from .skin import Ray, SkinDrag, muscle_at, skin_under
 from .stage import SceneView, Stage
@@ -47,13 +47,15 @@ class CameraMouse:
         io = imgui.get_io()
         if self._doing:
             self._drag(io)
-            if not any(imgui.is_mouse_down(button) for button in (LEFT, RIGHT, MIDDLE)):
+            if not any(
+                imgui.is_mouse_down(button) for button in (LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON)
+            ):
                 self._release(io)
         elif io.want_capture_mouse or not imgui.is_mouse_pos_valid():
             self._view.hovered = None
         else:
             self._hover(io)
-            for button in (LEFT, RIGHT, MIDDLE):
+            for button in (LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON):
                 if imgui.is_mouse_clicked(button):
                     self._press(io, button)
             if io.mouse_wheel:
@@ -69,9 +71,9 @@ class CameraMouse:
     def _press(self, io: Any, button: int) -> None:
         self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
         self._view.hovered = None
-        if button == MIDDLE or io.key_shift:
+        if button == MIDDLE_BUTTON or io.key_shift:
             self._doing = "pan"
-        elif button == RIGHT or io.key_alt:
+        elif button == RIGHT_BUTTON or io.key_alt:
             self._doing = "orbit"
         else:
             self._doing = self._take(io)

@@ -30,7 +30,7 @@ from ...pictures import Image, save_png
 from ...scenes import BUILT_IN, build_face, called_head
 from ...workers import Send, WorkerPool, lower_priority, share_of_cores
 
-SIDE = 128  # side of a square picture [pixels]
+PORTRAIT_SIDE = 128  # side of a square picture [pixels]
 
 
 class Portraits:
@@ -82,7 +82,9 @@ class Portraits:
         """Make textures of new pictures; the window's thread calls this once a frame."""
         while self._waiting:
             name, image = self._waiting.popleft()
-            texture = self._gl.texture((SIDE, SIDE), 3, image.tobytes(), alignment=1)
+            texture = self._gl.texture(
+                (PORTRAIT_SIDE, PORTRAIT_SIDE), 3, image.tobytes(), alignment=1
+            )
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
             self._textures[name] = texture
@@ -103,7 +105,7 @@ def draw_portraits(people: Sequence[int | str], send: Send) -> None:
     _remove_stale()
     for who in people:
         scene = build_face(None if who == BUILT_IN else called_head(who))
-        with Capture(scene, CaptureOptions((SIDE, SIDE))) as capture:
+        with Capture(scene, CaptureOptions((PORTRAIT_SIDE, PORTRAIT_SIDE))) as capture:
             image = capture.draw_image()
         with contextlib.suppress(UserError):  # an unsaved picture is drawn again next time
             save_png(_file_of(who), image)
@@ -111,13 +113,13 @@ def draw_portraits(people: Sequence[int | str], send: Send) -> None:
 
 
 def kept_portrait(who: int | str) -> Image | None:
-    """Return the stored picture of a person, shape (SIDE, SIDE, 3); None if there is none."""
+    """Return the stored picture of a person, a square of PORTRAIT_SIDE; None if there is none."""
     try:
         with PIL.Image.open(_file_of(who)) as picture:
             image = np.asarray(picture.convert("RGB"))
     except (OSError, SyntaxError, ValueError):  # missing, or incomplete
         return None
-    return image if image.shape == (SIDE, SIDE, 3) else None
+    return image if image.shape == (PORTRAIT_SIDE, PORTRAIT_SIDE, 3) else None
 
 
 def _file_of(who: int | str) -> Path:

@@ -17,9 +17,9 @@ from risorius import render, sim
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.closest import closest_points
 from risorius.geometry.mesh_graph import path_lengths
-from risorius.geometry.rays import PARALLEL, crossings
+from risorius.geometry.rays import PARALLEL_VOLUME, crossings
 
-from ...control_names import OPPOSITES, SIGNED_CONTROLS, plain_name, split_side, twin_of
+from ...control_names import ONE_MOTION_BASES, SIGNED_CONTROLS, plain_name, split_side, twin_of
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
@@ -65,7 +65,7 @@ def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats
         faces = faces[(corners.min(axis=1) < rounding) & (corners.max(axis=1) > -rounding)]
     volume, u, v, distance = crossings(ray.origin, ray.direction, positions[faces])
     inside = (u >= -rounding) & (v >= -rounding) & (u + v <= 1.0 + rounding)
-    hit = (volume > PARALLEL) & inside & (distance > 0.0)
+    hit = (volume > PARALLEL_VOLUME) & inside & (distance > 0.0)
     if not hit.any():
         return None
     point: Floats64 = ray.origin + distance[hit].min() * ray.direction
@@ -203,10 +203,14 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
         is_whole = f"{name}_left" in lowest
         if is_whole or name.startswith(unpulled_prefixes):
             continue
-        if linked and is_aside and (name in SIGNED_CONTROLS or split_side(name)[0] in OPPOSITES):
+        if (
+            linked
+            and is_aside
+            and (name in SIGNED_CONTROLS or split_side(name)[0] in ONE_MOTION_BASES)
+        ):
             continue
         is_pair = linked and twin != name and values[name] == values[twin]
-        if not is_pair or split_side(name)[0] in OPPOSITES:
+        if not is_pair or split_side(name)[0] in ONE_MOTION_BASES:
             found.append((name,))
         elif name < twin:
             found.append((name, twin))

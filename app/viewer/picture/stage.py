@@ -25,13 +25,13 @@ from ...light_maps import SceneLight, scene_light
 from ...pictures import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.plug_ins import PlugInError
-from ...refining.presets import STATIC, Refinement
+from ...refining.presets import STATIC_REFINER, Refinement
 from ...scenes import Drawable
 from ..interface.gui import THEMES, em
 from ..messages import Messages
 from ..session.physics import CALM_SECONDS, FrameTimes
 from ..session.session import Session
-from ..settings import BACKGROUNDS, SKINS, TONES, Display, Settings
+from ..settings import BACKGROUND_CHOICES, SKIN_CHOICES, TONE_ANGLES, Display, Settings
 
 
 class SceneView:
@@ -77,7 +77,7 @@ class SceneView:
     def background(self) -> render.Background | render.MapBackground:
         """The background of the picture."""
         wanted = self.display.background
-        behind = self.light.behind if wanted == "map" else BACKGROUNDS[wanted]
+        behind = self.light.behind if wanted == "map" else BACKGROUND_CHOICES[wanted]
         return behind or THEMES[self._settings.theme].background
 
     @property
@@ -145,28 +145,28 @@ class Stage:
         self.pipeline = Pipeline(scene, render.Renderer(self.surface))
         self._tone: float | None = None
         # The unrefined mesh, and the mesh of the chosen refiner.
-        self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC))
+        self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC_REFINER))
         self.beside = self.static  # at the left of a comparison
         self._asked: Refinement | None = None  # the bound refinement
-        self._asked_beside = Refinement(refiner=STATIC)
+        self._asked_beside = Refinement(refiner=STATIC_REFINER)
         self.bind(display)
 
     def bind(self, display: Display) -> None:
         """Bind the refiners of `display`; raises UserError if a refiner refuses its options."""
-        tone = TONES[display.tone]
+        tone = TONE_ANGLES[display.tone]
         if tone != self._tone:
             self.pipeline.set_tone(tone)
             self._tone = tone
         beside = display.refinement_beside
         if beside != self._asked_beside:
             self._asked_beside = beside
-            is_static = beside.refiner == STATIC
+            is_static = beside.refiner == STATIC_REFINER
             self.beside = self.static if is_static else self.pipeline.bind(beside)
         chosen = display.refinement_on(self.scene)
         if chosen == self._asked:
             return
         self._asked = chosen  # so wrong options give one error, not one in every frame
-        is_static = chosen.refiner == STATIC
+        is_static = chosen.refiner == STATIC_REFINER
         self.refined = self.static if is_static else self.pipeline.bind(chosen)
 
     def give_up_refinement(self) -> None:
@@ -259,7 +259,7 @@ def style_of(
     display: Display, background: render.Background | render.MapBackground | None
 ) -> render.Style:
     """Return the renderer's style for the user's display settings."""
-    is_textured, albedo = SKINS[display.skin]
+    is_textured, albedo = SKIN_CHOICES[display.skin]
     return render.Style(
         shading=render.Shading(display.shading),
         wireframe=display.wireframe,

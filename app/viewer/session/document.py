@@ -82,7 +82,7 @@ class LiveOverride:
         return ControlValues(self._limits, numbers)
 
 
-_QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
+QUOTED_TEXT = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
 
 class ScriptFile:
@@ -121,7 +121,7 @@ class ScriptFile:
     def _has_comments(self) -> bool:
         """Whether the file has comments below its head, which saving would remove."""
         text = (self._bytes or b"").decode(errors="replace")
-        return "#" in _QUOTED.sub("", text.removeprefix(preface_of(text)))
+        return "#" in QUOTED_TEXT.sub("", text.removeprefix(preface_of(text)))
 
     def save(self, script: Script, path: Path) -> None:
         """Write the script to a file, its file from now on; raises UserError if this fails."""

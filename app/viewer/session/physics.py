@@ -25,12 +25,12 @@ from ...motion.life import Idle, Values
 from .session import Session
 
 STEP_TIME = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
-MOST_STEPS = 6  # in one frame: after a stall, the window catches up a tenth of a second
+MOST_STEPS_PER_FRAME = 6  # in one frame: after a stall, the window catches up a tenth of a second
 # A step may be taken early by this share of its length: frames of a 60 Hz screen that are slightly
 # late or early then get one step each, so motion does not stutter.
 EARLY_FRACTION = 0.25
 CALM_SECONDS = 0.15  # [s] without change until physics rests, and the scene has full detail
-PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
+PHASE_NAMES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 
 Life = Callable[[float], Mapping[str, float]]  # seconds -> values to add to controls
 
@@ -49,7 +49,7 @@ class FrameTimes:
     def clear(self) -> None:
         """Forget all frames: the next ones show another scene."""
         kept_frames = 60
-        self.milliseconds = {name: deque([0.0], kept_frames) for name in PHASES}
+        self.milliseconds = {name: deque([0.0], kept_frames) for name in PHASE_NAMES}
         self.whole = deque([0.0], kept_frames)
         self.steps = deque([0], kept_frames)
         self._is_over = False  # whether the last frame is complete
@@ -91,15 +91,15 @@ class Clock:
         self._owed = 0.0
 
     def steps(self, elapsed: float, early: float = EARLY_FRACTION) -> int:
-        """Return the number of due steps after `elapsed` more seconds, MOST_STEPS at most.
+        """Number of due steps after `elapsed` more seconds, MOST_STEPS_PER_FRAME at most.
 
         early: fraction of its length by which a step may be taken early.
         """
         self._owed += max(elapsed, 0.0)
         due = max(int(self._owed / STEP_TIME + early), 0)
-        if due > MOST_STEPS:
+        if due > MOST_STEPS_PER_FRAME:
             self._owed = 0.0
-            return MOST_STEPS
+            return MOST_STEPS_PER_FRAME
         self._owed -= due * STEP_TIME
         return due
 

@@ -12,10 +12,11 @@ from pathlib import Path
 from ...errors import UserError
 from ...sound.decoding import Sound, load_sound
 from ...sound.player import NoDeviceError, Player
-from .physics import MOST_STEPS, STEP_TIME
+from .physics import MOST_STEPS_PER_FRAME, STEP_TIME
 from .session import Session
 
-LONGEST_FRAME = (MOST_STEPS + 1) * STEP_TIME  # [s] of the script in one frame; more is a jump
+# [s] of the script in one frame; more is a jump.
+LONGEST_CATCH_UP = (MOST_STEPS_PER_FRAME + 1) * STEP_TIME
 
 
 class Soundtrack:
@@ -79,7 +80,7 @@ class Soundtrack:
         went: advance of the script in the last frame [s].
         """
         session = self._session
-        has_jumped = not 0.0 <= went <= LONGEST_FRAME * session.speed
+        has_jumped = not 0.0 <= went <= LONGEST_CATCH_UP * session.speed
         if has_jumped or player.speed != session.speed:
             player.play(session.time, session.speed)
         if player.is_stuck:

@@ -19,7 +19,7 @@ from ...script.key_sets import NO_KEYS, KeySet
 from ...text import counted
 from ..context import ApplicationContext
 from ..interface.commands import MenuBar
-from ..interface.gui import LEFT, MIDDLE, RIGHT, em, ink_of
+from ..interface.gui import LEFT_BUTTON, MIDDLE_BUTTON, RIGHT_BUTTON, em, ink_of
 from ..interface.widgets import shortened
 from ..messages import Message, Task
 from . import key_marks
@@ -221,9 +221,9 @@ class DopeSheet:
         if x < left + self._gutter:
             if track is not None:
                 imgui.set_tooltip(track.label)
-                if imgui.is_mouse_clicked(LEFT) and track.is_sum:
+                if imgui.is_mouse_clicked(LEFT_BUTTON) and track.is_sum:
                     self.settings.folds[track.name] = not self._is_open(track.name)
-                elif imgui.is_mouse_clicked(LEFT):
+                elif imgui.is_mouse_clicked(LEFT_BUTTON):
                     selection.keys = track.keys
             imgui.set_scroll_y(imgui.get_scroll_y() - em(self.ROW_HEIGHT) * io.mouse_wheel)
             return
@@ -234,18 +234,18 @@ class DopeSheet:
             under = hit.key if hit else NO_KEYS
         elif track is not None:
             under = track.keys.nearest(axis.time(x), axis.seconds(em(key_reach)))
-        if (under or hit) and not imgui.is_mouse_down(LEFT):
+        if (under or hit) and not imgui.is_mouse_down(LEFT_BUTTON):
             value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
             imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
         if self.settings.shows_curves and graph.handle is not None:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ns)
-            if imgui.is_mouse_clicked(LEFT):
+            if imgui.is_mouse_clicked(LEFT_BUTTON):
                 self._begin("slope", io)
-        elif imgui.is_mouse_clicked(LEFT):
+        elif imgui.is_mouse_clicked(LEFT_BUTTON):
             graph.held = hit
             is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
             self._press(io, under, is_dense=is_dense)
-        elif imgui.is_mouse_clicked(RIGHT):
+        elif imgui.is_mouse_clicked(RIGHT_BUTTON):
             if under and not under <= selection.keys:
                 selection.keys = under
             self._wants_menu = True
@@ -280,12 +280,12 @@ class DopeSheet:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
             if self._drag is None:
                 imgui.set_tooltip("drag the script's end")
-        if self._drag is None and imgui.is_mouse_clicked(LEFT):
+        if self._drag is None and imgui.is_mouse_clicked(LEFT_BUTTON):
             self._begin("end" if is_at_end else "scrub", io)
 
     def _turn_wheel(self, io: Any) -> None:
         """Zoom about the mouse, scroll by Shift or a sideways wheel, pan by the middle button."""
-        if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
+        if self._drag is None and imgui.is_mouse_clicked(MIDDLE_BUTTON):
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         zoom_per_notch = 0.8
@@ -318,7 +318,7 @@ class DopeSheet:
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
             self.selection.keys = drag.selected
-        elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
+        elif not imgui.is_mouse_down(MIDDLE_BUTTON if drag.doing == "pan" else LEFT_BUTTON):
             self._drag = None
             self._messages.attempt(lambda: self._release(io, drag))
 

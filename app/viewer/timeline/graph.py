@@ -16,7 +16,7 @@ from imgui_bundle import imgui
 
 from ...script.easings import free_easing
 from ...script.key_sets import NO_KEYS, KeyId, KeySet, is_any_of
-from ...script.keyframes import TOLERANCE
+from ...script.keyframes import EQUAL_TOLERANCE
 from ..interface.gui import Gui, em, ink_of
 from .key_marks import Point, draw_line
 from .keys import KeySelection, Track
@@ -218,8 +218,8 @@ class Graph:
         label_room = 1.6  # [em] between two labels of values
         wide = (each for each in VALUE_STEPS if -each * self.slope >= em(label_room))
         step = next(wide, VALUE_STEPS[-1])
-        first = int(np.ceil(self._low / step - TOLERANCE))
-        last = int(self._high / step + TOLERANCE)
+        first = int(np.ceil(self._low / step - EQUAL_TOLERANCE))
+        last = int(self._high / step + EQUAL_TOLERANCE)
         for number in range(first, last + 1):
             y = round(self.y(number * step)) + 0.5
             label = f"{number * step:g}"

@@ -12,7 +12,7 @@ from ...control_names import plain_name
 from ...errors import UserError
 from ...script import Channel, Script, keyframes
 from ...script.key_sets import NO_KEYS, KeySet
-from ...script.keyframes import POSES, all_keys
+from ...script.keyframes import POSE_TRACK, all_keys
 from ...text import counted
 from ..messages import Message
 from ..session.session import Session
@@ -46,14 +46,14 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     times = all_keys(script).times
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
-        poses = KeySet({POSES: times.pop(POSES, np.empty(0))})
+        poses = KeySet({POSE_TRACK: times.pop(POSE_TRACK, np.empty(0))})
         whole_poses_row = "Whole poses"  # name of a row
         whole = Track(whole_poses_row, "Poses", poses, names=names, is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
         for name in script.posed_names:
             channel = script.posed_channel(name)
             above = (whole_poses_row,)
-            row = Track(f"pose {name}", plain_name(name), poses, channel, name, POSES, above)
+            row = Track(f"pose {name}", plain_name(name), poses, channel, name, POSE_TRACK, above)
             rows.append(row)
     tracks_row = "Tracks"  # name of a row
     if script.tracks:
@@ -115,10 +115,12 @@ class KeySelection:
                 "no control was moved since the last key; [Key whole pose] sets keys for all"
             )
         time = self._session.set_key(names)
-        there = keyframes.all_keys(self._session.script).nearest(time, keyframes.TOLERANCE).times
+        there = (
+            keyframes.all_keys(self._session.script).nearest(time, keyframes.EQUAL_TOLERANCE).times
+        )
         tracks = {name: times for name, times in there.items() if name in names}
         is_posed = len(tracks) < len(names)
-        poses = {POSES: there[POSES]} if is_posed and POSES in there else {}
+        poses = {POSE_TRACK: there[POSE_TRACK]} if is_posed and POSE_TRACK in there else {}
         self.keys = KeySet(poses | tracks)
         controls = listed(names)
         return f"{controls} keyed at {time:.2f} s"
@@ -127,8 +129,10 @@ class KeySelection:
         """Set keys for all controls, with the current face, at the current time."""
         time = self._session.set_key()
         script = self._session.script
-        there = keyframes.all_keys(script).nearest(time, keyframes.TOLERANCE)
-        self.keys = KeySet({POSES: there.times[POSES]}) if POSES in there.times else there
+        there = keyframes.all_keys(script).nearest(time, keyframes.EQUAL_TOLERANCE)
+        self.keys = (
+            KeySet({POSE_TRACK: there.times[POSE_TRACK]}) if POSE_TRACK in there.times else there
+        )
         return f"Whole pose keyed at {time:.2f} s"
 
     def keys_of(self, names: Iterable[str]) -> KeySet:

@@ -15,7 +15,7 @@ from PIL import ImageDraw, ImageFont
 
 from risorius import render
 
-from ..interface.gui import FONT, FONT_SIZE, THEMES, Theme, wait_for_event
+from ..interface.gui import FONT_FILE, FONT_SIZE, THEMES, Theme, wait_for_event
 from ..settings import Settings, load_settings
 
 LOADING_TEXT = "Loading the face ..."
@@ -98,7 +98,11 @@ def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> re
     """Return an image with a line of text in its middle."""
     shade = tuple(round(255.0 * part) for part in theme.panel)
     page = PIL.Image.new("RGB", size, shade)
-    font = ImageFont.truetype(FONT, letter) if FONT.exists() else ImageFont.load_default(letter)
+    font = (
+        ImageFont.truetype(FONT_FILE, letter)
+        if FONT_FILE.exists()
+        else ImageFont.load_default(letter)
+    )
     ink = "white" if theme.is_dark else "black"
     ImageDraw.Draw(page).text((size[0] / 2, size[1] / 2), text, ink, font, "mm")
     return np.asarray(page)

@@ -13,13 +13,14 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 WRITTEN_ATTRIBUTES = {"position", "custom_normal"}  # written by the copy itself
-LOOKS = {
+LOOK_OPTIONS = {
     "SMOOTH": {"scheme": "cubic", "criterion": "displacement+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
 }
-WIDTHS = {"FLOAT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
-FIELDS = {"INT": "value", "FLOAT": "value", "FLOAT_COLOR": "color"}  # others have a "vector"
-SPLITS = "risorius_splits"  # attribute of the mesh at rest: splits of each edge in all frames
+VALUE_WIDTHS = {"FLOAT": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
+VALUE_FIELDS = {"INT": "value", "FLOAT": "value", "FLOAT_COLOR": "color"}  # others have a "vector"
+# Attribute of the mesh at rest: splits of each edge in all frames.
+SPLITS_ATTRIBUTE = "risorius_splits"
 bounds: dict[int, "Bound"] = {}  # number of a refined copy in this session -> its refiner
 
 
@@ -41,9 +42,9 @@ def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
     Blender's internal values and positions are left out.
     """
     return {
-        each.name: numbers(each.data, FIELDS.get(each.data_type, "vector"), width, np.float32)
+        each.name: numbers(each.data, VALUE_FIELDS.get(each.data_type, "vector"), width, np.float32)
         for each in mesh.attributes
-        if each.domain == "POINT" and (width := WIDTHS.get(each.data_type))
+        if each.domain == "POINT" and (width := VALUE_WIDTHS.get(each.data_type))
         if each.name not in WRITTEN_ATTRIBUTES and not each.name.startswith(".")
     }
 
@@ -63,8 +64,8 @@ class Bound:
         self.materials = numbers(rest.polygons, "material_index", 1, np.int32).ravel()[polygons]
         self.counts = len(rest.vertices), len(rest.polygons)
         self.corners = None  # corners of the copy's current triangles
-        splits = rest.get(SPLITS)
-        look = dict(LOOKS[settings.look])
+        splits = rest.get(SPLITS_ATTRIBUTE)
+        look = dict(LOOK_OPTIONS[settings.look])
         if splits is not None:
             del look["criterion"]
             look["splits"] = np.array(splits[:], dtype=np.uint8)
@@ -94,7 +95,7 @@ class Bound:
         values = {
             name: each
             for name, each in values_of(source).items()
-            if name in self.value_kinds and WIDTHS[self.value_kinds[name]] == each.shape[1]
+            if name in self.value_kinds and VALUE_WIDTHS[self.value_kinds[name]] == each.shape[1]
         }
         frame = self.refiner.refine(points_of(source), values=values)
         is_made = self.stays and self.corners is not None
@@ -130,7 +131,9 @@ class Bound:
 def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.ndarray) -> None:
     """Set an attribute of a mesh; it is added if missing."""
     attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, domain)
-    attribute.data.foreach_set(FIELDS.get(kind, "vector"), np.ascontiguousarray(values).ravel())
+    attribute.data.foreach_set(
+        VALUE_FIELDS.get(kind, "vector"), np.ascontiguousarray(values).ravel()
+    )
 
 
 def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
@@ -277,7 +280,7 @@ class OBJECT_OT_risorius_keep(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
         copy = refined_copy(context)
         scene = context.scene
         shown = scene.frame_current
-        copy.risorius.rest.pop(SPLITS, None)
+        copy.risorius.rest.pop(SPLITS_ATTRIBUTE, None)
         changed(copy.risorius, context)
         most = None
         for frame in range(scene.frame_start, scene.frame_end + 1):
@@ -288,7 +291,7 @@ class OBJECT_OT_risorius_keep(OfRefinedCopy, bpy.types.Operator):  # noqa: N801
                 return {"CANCELLED"}
             splits = bounds[copy.session_uid].refiner.splits
             most = splits.copy() if most is None else np.maximum(most, splits)
-        copy.risorius.rest[SPLITS] = most.astype(int).tolist()
+        copy.risorius.rest[SPLITS_ATTRIBUTE] = most.astype(int).tolist()
         bounds.pop(copy.session_uid, None)
         scene.frame_set(shown)
         return {"FINISHED"}
@@ -303,12 +306,12 @@ class OBJECT_OT_risorius_change(OfRefinedCopy, bpy.types.Operator):  # noqa: N80
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether the active object is a refined copy with one topology."""
-        return super().poll(context) and SPLITS in refined_copy(context).risorius.rest
+        return super().poll(context) and SPLITS_ATTRIBUTE in refined_copy(context).risorius.rest
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget the splits."""
         copy = refined_copy(context)
-        del copy.risorius.rest[SPLITS]
+        del copy.risorius.rest[SPLITS_ATTRIBUTE]
         changed(copy.risorius, context)
         return {"FINISHED"}
 
@@ -332,7 +335,7 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
             return
         for name in ("source", "rest", "look", "blend"):
             layout.prop(settings, name)
-        is_kept = settings.rest is not None and SPLITS in settings.rest
+        is_kept = settings.rest is not None and SPLITS_ATTRIBUTE in settings.rest
         operator = OBJECT_OT_risorius_change if is_kept else OBJECT_OT_risorius_keep
         layout.operator(operator.bl_idname)
         if settings.problem:
@@ -346,14 +349,14 @@ def show_in_menu(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
     menu.layout.operator(OBJECT_OT_risorius_refine.bl_idname)
 
 
-CLASSES = (
+REGISTERED_CLASSES = (
     RisoriusSettings,
     OBJECT_OT_risorius_refine,
     OBJECT_OT_risorius_keep,
     OBJECT_OT_risorius_change,
     VIEW3D_PT_risorius,
 )
-HANDLERS = (
+REGISTERED_HANDLERS = (
     ("frame_change_post", refine_frame),
     *((name, forget) for name in ("load_post", "undo_post", "redo_post")),
 )
@@ -361,20 +364,20 @@ HANDLERS = (
 
 def register() -> None:
     """Register the add-on; Blender calls this when it is switched on."""
-    for one in CLASSES:
+    for one in REGISTERED_CLASSES:
         bpy.utils.register_class(one)
     bpy.types.Object.risorius = bpy.props.PointerProperty(type=RisoriusSettings)
     bpy.types.VIEW3D_MT_object.append(show_in_menu)
-    for name, handler in HANDLERS:
+    for name, handler in REGISTERED_HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister() -> None:
     """Unregister the add-on; Blender calls this when it is switched off. Refined copies stay."""
-    for name, handler in HANDLERS:
+    for name, handler in REGISTERED_HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     bpy.types.VIEW3D_MT_object.remove(show_in_menu)
     del bpy.types.Object.risorius
-    for one in reversed(CLASSES):
+    for one in reversed(REGISTERED_CLASSES):
         bpy.utils.unregister_class(one)
     forget()

@@ -47,7 +47,7 @@ def test_entries(length):
         triangles = TABLES.patterns.subtriangles_of(state)
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
         configuration = configuration_of(splits)
-        assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
+        assert len(triangles) == table.CONFIGURATION_TABLE.counts[configuration]
         areas = np.linalg.det(table.POINT_COORDINATES[triangles] / 4.0)
         assert (areas > 0.01).all()
         assert areas.sum() == approx(1.0, abs=1e-12)
@@ -149,5 +149,5 @@ def test_states_follow_the_tables():
         states = TABLES.transitions[states, wanted]
         assert np.shares_memory(rows, coherent.states)
         assert (rows == states).all()
-        assert (coherent.patterns.counts[rows] == table.CONFIGURATIONS.counts[wanted]).all()
+        assert (coherent.patterns.counts[rows] == table.CONFIGURATION_TABLE.counts[wanted]).all()
     assert coherent.removals_out_of_order == removed > 0

@@ -35,7 +35,7 @@ def test_one_triangle(splits):
     refiner = kahler(mesh, criterion=Forced(splits))
     refined = refiner.refine(mesh.vertices)
     refine.check(refiner, refined, mesh.vertices)
-    assert len(refined.triangles) == table.CONFIGURATIONS.counts[configuration_of(splits)]
+    assert len(refined.triangles) == table.CONFIGURATION_TABLE.counts[configuration_of(splits)]
     named_splits = dict(zip([(0, 1), (1, 2), (0, 2)], splits, strict=True))
     twin = refine_plainly(*as_lists(mesh.vertices, mesh.faces), named_splits)
     assert_equals_twin(refiner, refined, twin)
