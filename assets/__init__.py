@@ -12,6 +12,7 @@ from .errors import AssetError
 from .loading import load
 from .meshes import Mesh, read_mesh
 from .model import Eye, FineShape, Head, Layer, Part, Plane, Segment, Wrinkles
+from .oil import oil_of
 
 __all__ = [
     "AssetError",
@@ -25,5 +26,6 @@ __all__ = [
     "Segment",
     "Wrinkles",
     "load",
+    "oil_of",
     "read_mesh",
 ]

@@ -19,7 +19,8 @@ LIGHTNESS_WEIGHTS = 0.3, 0.6, 0.1  # weights of red, green and blue in lightness
 _BUMP_UNIT = 5
 _AROUND_UNIT = 6
 _FINE_UNIT = 7
-_AROUND_LEVEL = 5  # mipmap level at which a texel is the mean of 32 x 32 texels
+_AROUND_LEVEL = 5  # highest mipmap level of the mean lightness: of 32 x 32 texels
+_AROUND_BITS = 6  # bits of the width of the map of mean lightness; larger pictures have more
 MOST_ANISOTROPY = 8.0  # greatest ratio of anisotropic filtering
 
 
@@ -53,6 +54,7 @@ class Texture(_Mipmaps):
         image: Image,
         occlusion: Image | None = None,
         fine_shape: "BumpMap | None" = None,
+        oil: Image | None = None,
     ) -> None:
         """Upload an image to the OpenGL of a surface.
 
@@ -61,6 +63,8 @@ class Texture(_Mipmaps):
         - occlusion: ambient occlusion, 255 where all ambient light arrives, (H, W), uint8.
         - fine_shape: a map of two channels. Only per-pixel shading shows it, on streams of at least
           16 columns.
+        - oil: strength of the highlight, 255 is full, in the layout of the image, (h, w), uint8;
+          None: full everywhere.
 
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
@@ -81,16 +85,22 @@ class Texture(_Mipmaps):
         # Drivers without this extension report 0. In software OpenGL it is several times slower.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(MOST_ANISOTROPY, gl.max_anisotropy)
-        self._around = self._means(gl)
+        self._around = self._means(gl, oil)
         self.fine_shape = fine_shape
 
-    def _means(self, gl: moderngl.Context) -> moderngl.Texture:
-        """Make a texture with one channel: the mean lightness of the skin around each texel."""
-        width, height = (max(each >> _AROUND_LEVEL, 1) for each in self.size)
-        level = min(_AROUND_LEVEL, max(self.size).bit_length() - 1)
+    def _means(self, gl: moderngl.Context, oil: Image | None) -> moderngl.Texture:
+        """Make a texture of two channels: the mean lightness around each texel, and its oil."""
+        level = min(max(max(self.size).bit_length() - _AROUND_BITS, 0), _AROUND_LEVEL)
+        width, height = (max(each >> level, 1) for each in self.size)
         texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
-        means = (np.square(texels[:, :3] / 255.0) @ LIGHTNESS_WEIGHTS).astype(np.float16)
-        around = gl.texture((width, height), 1, means.tobytes(), dtype="f2", alignment=1)
+        values = np.ones((height, width, 2), np.float16)
+        means = np.square(texels[:, :3] / 255.0) @ LIGHTNESS_WEIGHTS
+        values[..., 0] = means.reshape(height, width)
+        if oil is not None:
+            rows = np.arange(height) * len(oil) // height
+            columns = np.arange(width) * oil.shape[1] // width
+            values[..., 1] = oil[::-1][rows[:, None], columns] / 255.0
+        around = gl.texture((width, height), 2, values.tobytes(), dtype="f2", alignment=1)
         around.repeat_x = around.repeat_y = False
         return around
 

@@ -29,6 +29,7 @@ class SkinImages:
     uv: texture coordinates, (U, 2). face_uv: row of `uv` at each corner, (F, 3).
     albedo: sRGB, (H, W, 3). in_tone: makes the albedo for an individual typology angle [deg].
     ambient_occlusion: factor on the light, (H, W); None: no occlusion.
+    oil: strength of highlights, 255 is full, (h, w); None: full everywhere.
     fine_shape: form of the skin beyond its triangles. wrinkles: the furrows of the skin.
     fade: for each vertex, (V, 2): the opacity, 0 to 1 after clamping; and a number below 0 where
         the inner side is invisible. None: the whole mesh is visible.
@@ -39,6 +40,7 @@ class SkinImages:
     albedo: Pixels | None = None
     in_tone: Callable[[float], Pixels] | None = None
     ambient_occlusion: Pixels | None = None
+    oil: Pixels | None = None
     fine_shape: assets.FineShape | None = None
     wrinkles: assets.Wrinkles | None = None
     fade: Floats32 | None = None

@@ -20,7 +20,7 @@ const vec3 BLEED = vec3(0.30, 0.10, 0.04);  // scattering into the edge of a cas
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);  // key light that lit skin reflects into shadows
 const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // part of occluded light that skin reflects
 const float OCCLUDED_KEY = 0.35;  // how much occlusion reduces the key light, which is an area light
-const float SHEEN = 0.9;  // strength of the narrow specular lobe of skin
+const float SHEEN = 0.7;  // strength of the narrow specular lobe of skin
 const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // tint of ambient light by skin nearby
 
 struct Lit {
@@ -44,7 +44,10 @@ vec3 hemisphere(vec3 normal) {
 
 // `openness`: fraction of the rim light that arrives. The rim light throws no shadows, but hardly
 // reaches folds, so occlusion must reduce it there. `subsurface`: strength of scattering, above 0.
-Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float gloss, float sharpness) {
+// `oil`: strength of the narrow lobe, 0 to 1.
+Lit studio(
+    vec3 normal, vec3 to_eye, float openness, float subsurface, float gloss, float sharpness, float oil
+) {
     vec3 scatter = SCATTER * subsurface;
     float rim = max(dot(normal, TO_RIM), 0.0) * openness;
     float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
@@ -54,7 +57,7 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     // has a wide lobe, and its oil a narrow lobe (d'Eon, Luebke 2007, GPU Gems 3, chapter 14).
     float highlight = exp2(sharpness * (dot(normal, normalize(to_key + to_eye)) - 1.0));
     float narrow = highlight * highlight;
-    highlight *= mix(1.0, 0.8 + SHEEN * narrow * narrow, subsurface);
+    highlight *= mix(1.0, 0.8 + SHEEN * oil * narrow, subsurface);
     Lit lit;
     // Key light that scatters past the terminator is not shadowed, and direct key light fades toward
     // the terminator. So the errors of the shadow map, which are largest there, are invisible.

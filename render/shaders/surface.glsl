@@ -161,7 +161,7 @@ void main() {
 #elif defined(FLAT)
     surface.to_eye = normalize(-position.xyz);
 #elif defined(GOURAUD)
-    Lit lit = studio(normal, normalize(-position.xyz), 1.0, subsurface, gloss, sharpness);
+    Lit lit = studio(normal, normalize(-position.xyz), 1.0, subsurface, gloss, sharpness, 1.0);
     surface.key = lit.key;
     surface.rest = lit.rest;
     surface.specular = lit.specular;
@@ -292,7 +292,7 @@ uniform vec3 inner_albedo;
 #endif
 #if defined(TEXTURED)
 uniform sampler2D albedo_texture;
-uniform sampler2D around_texture;  // mean lightness of the skin around
+uniform sampler2D around_texture;  // mean lightness of the skin around, and its oil
 uniform vec3 lightness_weights;
 uniform float redness;    // median ratio of red to green light of the texture
 uniform float occlusion;  // strength of the ambient occlusion in the texture's alpha, 0 or 1
@@ -397,6 +397,12 @@ vec3 shading_normal() {
 void main() {
     vec3 front = front_albedo();
     float solid = 1.0;
+#if defined(TEXTURED)
+    vec2 skin_around = texture(around_texture, surface.uv).rg;
+    float around = skin_around.r, oil = skin_around.g;
+#else
+    const float oil = 1.0;
+#endif
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, surface.fade.x);
     // The inner side of the neck is hidden, else a view from below would show it. A chin that moves
@@ -437,7 +443,7 @@ void main() {
     front *= mix(vec3(1.0), THIN, stretched);
 #endif
     float shade = ambient_occlusion * ambient_occlusion;
-    Lit lit = studio(normal, to_eye, shade * shade * shade, subsurface, gloss, sharpness);
+    Lit lit = studio(normal, to_eye, shade * shade * shade, subsurface, gloss, sharpness, oil);
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
 #endif
@@ -445,13 +451,12 @@ void main() {
     // Lips are redder than the skin around them, and moist. The threshold, chosen by eye, leaves out
     // red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
-    lit.specular *= 1.0 + 2.4 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+    lit.specular *= 1.0 + 1.8 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
     // Pores and hairs, which are darker than the skin around them, weaken the highlight, and so do
     // hollows. Without this, dark skin would show nothing but a smooth highlight.
     float shown_here = dot(front, lightness_weights);
-    float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.1);
-    lit.specular *= relief * relief * relief * mix(0.36, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion;
+    lit.specular *= relief * relief * relief * mix(0.36, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion * oil;
 #endif
 #if defined(BUMPS)
     front *= 1.0 - bump.depth * FURROW;

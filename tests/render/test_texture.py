@@ -22,6 +22,7 @@ def textured(
     values=None,
     occlusion=None,
     fine_shape=None,
+    oil=None,
     corner=None,
 ):
     """The picture of a square (or another shape) with the image spanning x and y from -50 to 50.
@@ -39,7 +40,7 @@ def textured(
         stream.vertices[:, [10, 14]] = 0.01  # u grows along x, v along y
     stream.upload(len(shape.positions), len(shape.triangles))
     fine = None if fine_shape is None else renderer.bump_map(*fine_shape, channels=2)
-    texture = render.Texture(renderer.surface, image, occlusion, fine)
+    texture = render.Texture(renderer.surface, image, occlusion, fine, oil)
     skin = render.Skin(stream, render.SkinMaps(texture), values=values)
     return draw(renderer, skin, style)
 
@@ -163,6 +164,22 @@ def test_lips_gloss(surface):
         ]
         shine[name] = int((frames[1] - frames[0])[46:50, 46:50].sum())
     assert shine["lips"] > 1.5 * shine["all lips"] > 0
+
+
+def test_skin_without_oil_is_dull(surface):
+    """The highlight follows the map of oil: the dry left half has none, the oily right half all."""
+    image = plain_image((212, 176, 160), (256, 256))
+    half = np.tile(np.uint8([0, 255]), (2, 1)).repeat(8, axis=1)
+    shine = {}
+    for name, oil in (("half", half), ("full", None)):
+        frames = [
+            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4), oil=oil)
+            for gloss in (0.0, 1.0)
+        ]
+        shine[name] = (frames[1] - frames[0]).astype(int)
+    assert shine["full"][30:66, 20:40].max() > 5
+    assert not shine["half"][30:66, 20:40].any()
+    assert (shine["half"][30:66, 60:76] == shine["full"][30:66, 60:76]).all()
 
 
 def test_skin_between_dark_hairs_shines_like_bare_skin(surface):

@@ -1,0 +1,30 @@
+"""The map of oil, which makes skin shine."""
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.assets.coarse import coarse_head
+
+
+def _at(head, oil, vertex):
+    """The oil at a vertex, as a fraction of the forehead's."""
+    row = head.face_uv[head.faces == vertex][0]
+    u, v = head.uv[row]
+    size = len(oil)
+    return oil[min(int((1.0 - v) * size), size - 1), min(int(u * size), size - 1)] / 255.0
+
+
+@pytest.mark.parametrize("name", ["built-in", "coarse"])
+def test_oil_has_the_order_of_measured_sites(head, name):
+    """Nose and chin are oilier than cheeks, as Youn and others 2005 measured, and necks hardly."""
+    face = head if name == "built-in" else coarse_head()
+    oil = assets.oil_of(face)
+    marks = face.vertices[face.landmarks]
+    cheek = np.linalg.norm(face.vertices - marks[[36, 48, 3]].mean(axis=0), axis=1).argmin()
+    low = np.where(face.vertices[:, 1] < marks[8, 1] - 40.0)[0]
+    necks = [_at(face, oil, vertex) for vertex in low]
+    cheeks = _at(face, oil, cheek)
+    assert _at(face, oil, face.landmarks[30]) > 0.9
+    assert 0.9 > _at(face, oil, face.landmarks[8]) > cheeks + 0.05
+    assert 0.7 > cheeks > 2.0 * max(necks)
