@@ -37,7 +37,7 @@ LAYOUT_TOKENS = {
     tokenize.ENDMARKER,
 }
 
-TOLD = re.compile(r"\b(told|tells?)\b", re.IGNORECASE)
+TOLD_WORDS = re.compile(r"\b(told|tells?)\b", re.IGNORECASE)
 FREE_RELATIVE = re.compile(
     r"\b(what (is|was|are|has|have|it|they|a|the)|who (is|does|has)|whatever|whoever)\b",
     re.IGNORECASE,
@@ -71,7 +71,7 @@ class Count:
         self.text_lines += text.count("\n")
         self.packed += sum(is_packed(node) for node in ast.walk(tree))
         self.constants += sum(constants_of(node) for node in tree.body)
-        self.told += len(TOLD.findall(text))
+        self.told += len(TOLD_WORDS.findall(text))
         self.relatives += len(FREE_RELATIVE.findall(text))
 
 

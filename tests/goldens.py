@@ -21,7 +21,7 @@ import numpy as np
 from PIL import Image
 
 COMMAND = Path(sys.executable).with_name("risorius")
-HEAD = Path(__file__).parents[1] / "assets" / "data"
+DATA_FOLDER = Path(__file__).parents[1] / "assets" / "data"
 SCRIPTS = ("face", "plane")
 FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit")
 SUFFIXES = {"gltf": "glb", "usd": "usdz", "vtkhdf": "vtkhdf", "arkit": "csv"}
@@ -57,7 +57,7 @@ def commands() -> Iterator[tuple[str, list[str]]]:
 def make(folder: Path) -> bool:
     """Run every command in the folder; true if all succeeded."""
     folder.mkdir(parents=True)
-    for each in sorted(HEAD.iterdir()):
+    for each in sorted(DATA_FOLDER.iterdir()):
         shutil.copy(each, folder / f"head_{each.name}")
     failed = 0
     for name, words in commands():

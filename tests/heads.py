@@ -13,9 +13,9 @@ from risorius.assets.meshes import Mesh
 from risorius.geometry.sides import sides_of
 
 Array = npt.NDArray[np.float64]
-TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, facing y
-METRES = 0.001
-SHIFT = (3.0, -2.0, 1.6)
+TURN_MATRIX = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, facing y
+METRES_PER_MILLIMETRE = 0.001
+SHIFT_VECTOR = (3.0, -2.0, 1.6)
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def user_head(level: int = 1) -> UserHead:
     """The built-in head with 4^level times as many triangles, as a user's head."""
     head = assets.load("head")
     fine = head.finer(level)
-    vertices = shape(fine.vertices) @ TURN.T * METRES + SHIFT
+    vertices = shape(fine.vertices) @ TURN_MATRIX.T * METRES_PER_MILLIMETRE + SHIFT_VECTOR
     return UserHead(Mesh(vertices, fine.faces), head.landmarks)
 
 

@@ -132,7 +132,7 @@ def with_debris() -> Mesh:
     return _mesh(np.concatenate([grid.vertices, extra]), [*grid.faces.tolist(), *faces])
 
 
-NAMED = {
+NAMED_MESHES = {
     function.__name__: function
     for function in (
         triangle,

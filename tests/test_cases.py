@@ -18,7 +18,7 @@ from .app.command_line import succeeded
 
 pytestmark = pytest.mark.slow
 
-CASES = Path(__file__).parent / "cases"
+CASE_FOLDER = Path(__file__).parent / "cases"
 SIZE = "160x120"
 
 
@@ -27,7 +27,7 @@ class Take:
 
     def __init__(self, name, folder, *options):
         output = folder / f"{Path(name).stem}.toml"
-        self.report = succeeded("convert", CASES / name, "-o", output, *options)
+        self.report = succeeded("convert", CASE_FOLDER / name, "-o", output, *options)
         script = tomllib.loads(output.read_text("utf-8"))
         self.duration = script["duration"]
         self.tracks = {name: np.array(keys_of(track)) for name, track in script["tracks"].items()}
@@ -108,14 +108,14 @@ def test_frames_without_a_face_are_left_out(name, tmp_path):
     assert take.peak("browDownLeft") < 0.1
 
 
-LANDMARKS = CASES / "own_landmarks.json"  # vertex indices
-POINTS = CASES / "own_landmark_points.json"  # points [m]
+LANDMARKS = CASE_FOLDER / "own_landmarks.json"  # vertex indices
+POINTS = CASE_FOLDER / "own_landmark_points.json"  # points [m]
 
 
 def picture_of(head, landmarks, output):
     """The picture of a head from a file at rest, as `capture` draws it, shape (H, W, 3)."""
     succeeded(
-        *("capture", "--head", CASES / head, "--landmarks", landmarks, "--set", "joy=0"),
+        *("capture", "--head", CASE_FOLDER / head, "--landmarks", landmarks, "--set", "joy=0"),
         *("-o", output, "--size", SIZE, "--background", "white", "--quiet"),
     )
     return np.asarray(PIL.Image.open(output).convert("RGB"), float)
@@ -127,7 +127,7 @@ def picture_of(head, landmarks, output):
         ("b_hair_card_two_sided.obj", LANDMARKS),
         ("b_mouth_open_a_little.obj", LANDMARKS),
         ("b_triangle_strips.ply", LANDMARKS),
-        ("b_mask_front.obj", CASES / "b_mask_front.json"),
+        ("b_mask_front.obj", CASE_FOLDER / "b_mask_front.json"),
     ],
     ids=lambda value: value if isinstance(value, str) else value.stem,
 )
@@ -151,7 +151,7 @@ def test_glb_is_read_as_its_accessors_say(tmp_path):
 
 def test_colours_of_vertices_are_linear():
     """Linear 16-bit vertex colours 0.2 0.5 0.9 become the blue (124, 188, 243)."""
-    mesh = assets.read_mesh(CASES / "b_glb_colours_u16.glb")
+    mesh = assets.read_mesh(CASE_FOLDER / "b_glb_colours_u16.glb")
     assert np.abs(mesh.colours.reshape(-1, 3) - np.array([124.0, 188.0, 243.0])).max() < 2.0
 
 

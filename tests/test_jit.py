@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-KERNELS = """
+KERNELS_MODULE = """
 from risorius.jit import njit
 from .other import factor
 
@@ -18,21 +18,21 @@ from .other import factor
 def scale(number):
     return factor() * number
 """
-OTHER = """
+OTHER_MODULE = """
 from risorius.jit import njit
 
 @njit
 def factor():
     return 2.0
 """
-PROGRAM = """
+KERNEL_PROGRAM = """
 import logging, sys
 logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stdout)
 from risorius.refine.kernels import scale
 print(scale(2.0), scale(3.0))
 """
-COMPILED = [f"compiling risorius.refine.{name}" for name in ("kernels.scale", "other.factor")]
-RESULT = "4.0 6.0"
+COMPILED_LINES = [f"compiling risorius.refine.{name}" for name in ("kernels.scale", "other.factor")]
+PRINTED_RESULT = "4.0 6.0"
 
 
 class Package:
@@ -46,10 +46,10 @@ class Package:
         shutil.copy(ROOT / "risorius" / "jit.py", folder / "risorius")
         (folder / "risorius" / "__init__.py").write_text("")
         (self.refine / "__init__.py").write_text("")
-        (self.refine / "other.py").write_text(OTHER)
-        (self.refine / "kernels.py").write_text(KERNELS)
+        (self.refine / "other.py").write_text(OTHER_MODULE)
+        (self.refine / "kernels.py").write_text(KERNELS_MODULE)
 
-    def run(self, program=PROGRAM, **environment):
+    def run(self, program=KERNEL_PROGRAM, **environment):
         """Run a process that calls the kernel, and return its output lines; it must succeed."""
         clean = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
         result = subprocess.run(
@@ -79,14 +79,14 @@ def test_code_is_kept_and_never_old(package):
 
     The cache folder is private.
     """
-    assert package.run() == [*COMPILED, RESULT]
-    assert package.run() == [RESULT]
+    assert package.run() == [*COMPILED_LINES, PRINTED_RESULT]
+    assert package.run() == [PRINTED_RESULT]
     (folder,) = package.kept()
     assert folder.stat().st_mode & 0o077 == 0
-    (package.refine / "other.py").write_text(OTHER.replace("2.0", "5.0"))
-    assert package.run() == [*COMPILED, "10.0 15.0"]
-    (package.refine / "other.py").write_text(OTHER)
-    assert package.run() == [RESULT]  # as after `git switch` there and back
+    (package.refine / "other.py").write_text(OTHER_MODULE.replace("2.0", "5.0"))
+    assert package.run() == [*COMPILED_LINES, "10.0 15.0"]
+    (package.refine / "other.py").write_text(OTHER_MODULE)
+    assert package.run() == [PRINTED_RESULT]  # as after `git switch` there and back
 
 
 @pytest.mark.parametrize(
@@ -115,14 +115,14 @@ def test_without_a_folder_code_is_compiled_anew(package, fault):
         else:
             pytest.skip("only root can give a folder away")
     warned, *lines = package.run()
-    assert lines == [*COMPILED, RESULT]
+    assert lines == [*COMPILED_LINES, PRINTED_RESULT]
     assert warned.startswith("compiled code is not kept (")
     assert "NUMBA_CACHE_DIR" in warned
 
 
 def test_runs_as_python(package):
     """With NUMBA_DISABLE_JIT=1 kernels run as Python functions, and nothing is stored."""
-    assert package.run(NUMBA_DISABLE_JIT="1") == [RESULT]
+    assert package.run(NUMBA_DISABLE_JIT="1") == [PRINTED_RESULT]
     assert not package.kept()
 
 
@@ -132,8 +132,10 @@ def test_processes_that_start_together(package):
     The next one compiles nothing.
     """
     with ThreadPoolExecutor(2) as threads:
-        assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {RESULT}
-    assert package.run() == [RESULT]
+        assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {
+            PRINTED_RESULT
+        }
+    assert package.run() == [PRINTED_RESULT]
 
 
 def test_functions_without_a_module_compile():
@@ -150,6 +152,6 @@ def test_functions_without_a_module_compile():
 
 def test_lanes_are_a_setting_of_one_kernel(package):
     """A kernel with `lanes` gives the same result, and numba's settings are restored."""
-    (package.refine / "kernels.py").write_text(KERNELS.replace("@njit", "@njit(lanes=True)"))
-    program = f"{PROGRAM}\nimport numba; print(numba.config.SLP_VECTORIZE)"
-    assert package.run(program) == [*COMPILED, RESULT, "0"]
+    (package.refine / "kernels.py").write_text(KERNELS_MODULE.replace("@njit", "@njit(lanes=True)"))
+    program = f"{KERNEL_PROGRAM}\nimport numba; print(numba.config.SLP_VECTORIZE)"
+    assert package.run(program) == [*COMPILED_LINES, PRINTED_RESULT, "0"]

@@ -26,7 +26,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 FOLDERS = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
 TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
-LEFT = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
+LEFTOVER_NAMES = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
 """Files that editors and systems make in any folder."""
 PAGES = {
     path.relative_to(ROOT / "docs").as_posix()
@@ -74,7 +74,13 @@ def test_what_an_editor_leaves_is_not_listed(tmp_path):
             folder = (tmp_path / package / pattern).parent
             folder.mkdir(parents=True, exist_ok=True)
             end = Path(pattern).suffix
-            for name in (*LEFT, f".#ours{end}", f"ours{end}~", f"#ours{end}#", f".ours{end}.swp"):
+            for name in (
+                *LEFTOVER_NAMES,
+                f".#ours{end}",
+                f"ours{end}~",
+                f"#ours{end}#",
+                f".ours{end}.swp",
+            ):
                 (folder / name).touch()
             assert not setuptools.glob.glob(str(tmp_path / package / pattern)), pattern
 
@@ -159,7 +165,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     checkout = folder / "checkout"
     shutil.copytree(ROOT, checkout, ignore=PASSED_OVER, symlinks=True)
     for inside in ("app", "assets/data", "docs/pictures", "examples", "render/shaders", "tests"):
-        for name in LEFT:
+        for name in LEFTOVER_NAMES:
             (checkout / inside / name).unlink(missing_ok=True)
             (checkout / inside / name).write_text("left by an editor")
         for name in (".#head.npz", ".#files.py"):  # a lock is a link without a target
@@ -219,7 +225,7 @@ def test_sdist_holds_what_its_tests_need(built):
     }
     assert wanted <= names
     assert not [name for name in names if name.endswith(".pyc")]
-    assert not [name for name in names if Path(name).name in LEFT or ".#" in name]
+    assert not [name for name in names if Path(name).name in LEFTOVER_NAMES or ".#" in name]
 
 
 @pytest.mark.slow

@@ -16,12 +16,12 @@ from tests.heads import user_head
 
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
 """Arrays of a refiner that subclasses may write: each frame writes all of them again."""
-PLAIN = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.Enum)
+PLAIN_TYPES = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.Enum)
 
 
 def arrays_of(thing, name, seen):
     """All arrays reached by public attributes, items and rows, each with its path."""
-    if thing is None or id(thing) in seen or isinstance(thing, PLAIN) or callable(thing):
+    if thing is None or id(thing) in seen or isinstance(thing, PLAIN_TYPES) or callable(thing):
         return
     seen[id(thing)] = thing  # kept alive, so that no other object gets its id
     if isinstance(thing, np.ndarray):
@@ -63,7 +63,7 @@ def person():
     return make_person(sample_identity(63))
 
 
-THINGS = {
+READ_ONLY_OBJECTS = {
     "head": lambda head: head,
     "finer": lambda head: head.finer(1),
     "plane": lambda head: assets.load("plane"),
@@ -97,10 +97,10 @@ def moved(head):
     return simulation
 
 
-@pytest.mark.parametrize("name", THINGS)
+@pytest.mark.parametrize("name", READ_ONLY_OBJECTS)
 def test_nothing_of_it_can_be_written(name, head):
     """All arrays reached by public attributes of heads and faces are read-only."""
-    found = dict(arrays_of(THINGS[name](head), name, {}))
+    found = dict(arrays_of(READ_ONLY_OBJECTS[name](head), name, {}))
     assert found
     assert [way for way, array in found.items() if array.flags.writeable] == []
 

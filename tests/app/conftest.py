@@ -18,7 +18,7 @@ from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session, Work
 from risorius.app.viewer.settings import Display, Settings
 
-from .driving import HELLO, SIZE, replace_state, settle, xdotool
+from .driving import HELLO_FILE, SIZE, replace_state, settle, xdotool
 
 
 @pytest.fixture(scope="session")
@@ -38,7 +38,7 @@ def face(scene: FaceScene) -> FaceScene:
 def session(face: FaceScene, tmp_path: Path) -> Session:
     """A session with a user's script of poses and a blink."""
     path = tmp_path / "own.toml"
-    path.write_text(HELLO.read_text(encoding="utf-8"))
+    path.write_text(HELLO_FILE.read_text(encoding="utf-8"))
     return Session(face, load_script(path))
 
 
@@ -77,7 +77,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     """A user's script with poses and a blink, opened in rows of keys."""
     path = tmp_path / "own.toml"
-    path.write_text(HELLO.read_text(encoding="utf-8"))
+    path.write_text(HELLO_FILE.read_text(encoding="utf-8"))
     viewer.session.work.open(load_script(path))
     viewer.face.selection.keys = NO_KEYS
     viewer.settings.shows_curves = False

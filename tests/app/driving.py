@@ -27,11 +27,11 @@ NEEDS_A_SCREEN = [
         reason="needs a display and xdotool; `make test` brings both",
     ),
 ]
-HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
+HELLO_FILE = Path(__file__).parents[2] / "docs" / "hello.toml"
 SIZE = (900, 600)  # size of the window that tests share
 DEADLINE = 60.0  # [s] limit for an answer that an idle machine gives at once
 LEAST_FRAMES = 10  # frames shown before a deadline counts: one that loads a head may last longer
-STEADY = 3  # equal frames, after which no panel moves
+STEADY_FRAMES = 3  # equal frames, after which no panel moves
 
 
 def settle(viewer: Viewer) -> None:
@@ -45,7 +45,9 @@ def settle(viewer: Viewer) -> None:
 
     def is_steady() -> bool:
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
-        return not viewer.file_drop.is_making and shown[-STEADY:] == STEADY * shown[-1:]
+        return (
+            not viewer.file_drop.is_making and shown[-STEADY_FRAMES:] == STEADY_FRAMES * shown[-1:]
+        )
 
     # While a face moves, panels may show older values.
     with mock.patch.object(viewer, "refresh", 0.0):

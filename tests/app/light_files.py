@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
+HEADER = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n"
 
 
 def pixels():
@@ -24,5 +24,5 @@ def rgbe(light):
 
 def write_map(path: Path) -> Path:
     """Write the sky as a Radiance file; return its path."""
-    path.write_bytes(HEAD + rgbe(pixels()).tobytes())
+    path.write_bytes(HEADER + rgbe(pixels()).tobytes())
     return path

@@ -13,7 +13,7 @@ from risorius.app.recordings.take import Take
 Array = npt.NDArray[np.float64]
 Columns = Mapping[str, Sequence[object] | Array]
 
-ANGLES = (
+ANGLE_COLUMNS = (
     "HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
     "RightEyeYaw", "RightEyePitch", "RightEyeRoll",
 )  # fmt: skip
@@ -86,7 +86,7 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
         shapes[f"eyeLookUp{side}"] = np.maximum(-down, 0.0) / 0.44
         shapes[f"eyeLookIn{side}"] = np.maximum(inward, 0.0) / 0.62
         shapes[f"eyeLookOut{side}"] = np.maximum(-inward, 0.0) / 0.59
-    angles = {name: np.zeros(count) for name in ANGLES}
+    angles = {name: np.zeros(count) for name in ANGLE_COLUMNS}
     angles |= {"HeadYaw": 0.5 * np.sin(time), "HeadPitch": 0.2 * np.cos(time)}
     angles |= {"HeadRoll": 0.1 * np.sin(2.0 * time)}
     outward = np.radians(4.0)

@@ -8,10 +8,10 @@ import PIL.Image
 
 from risorius.app.scenes import FaceScene
 
-CENTIMETRES = 0.1
-LIBRARY = "Farben für 頭.mtl"
-PICTURE = "Haut für 頭.png"
-FIRST = ("eyeball_left", "tongue")  # parts before the skin in the file
+CENTIMETRES_PER_MILLIMETRE = 0.1
+LIBRARY_NAME = "Farben für 頭.mtl"
+PICTURE_NAME = "Haut für 頭.png"
+FIRST_PARTS = ("eyeball_left", "tongue")  # parts before the skin in the file
 
 
 def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[str, slice]]:
@@ -21,8 +21,8 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
     """
     scene.reset()
     parts = {part.name: part for part in scene.parts if part.name != "wet_edges"}
-    names = [*FIRST, "skin", *(name for name in parts if name not in FIRST)]
-    lines = [f"mtllib {LIBRARY}"]
+    names = [*FIRST_PARTS, "skin", *(name for name in parts if name not in FIRST_PARTS)]
+    lines = [f"mtllib {LIBRARY_NAME}"]
     places: dict[str, slice] = {}
     count = 0
     for name in names:
@@ -30,7 +30,7 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
         points = scene.rest_positions if is_skin else np.float64(parts[name].vertices)
         faces = scene.faces if is_skin else parts[name].faces
         lines.append(f"g {name}\nusemtl {'skin' if is_skin else 'parts'}")
-        lines += [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in points * CENTIMETRES]
+        lines += [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in points * CENTIMETRES_PER_MILLIMETRE]
         if is_skin:
             assert scene.skin.uv is not None and scene.skin.face_uv is not None
             lines += [f"vt {u:.6f} {v:.6f}" for u, v in scene.skin.uv]
@@ -44,9 +44,9 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
     mesh = folder / "whole.obj"
     mesh.write_text("\n".join(lines), encoding="utf-8")
     picture = np.full((8, 8, 3), (200, 150, 130), np.uint8)
-    PIL.Image.fromarray(picture).save(folder / PICTURE)
-    library = f"newmtl skin\nKd 1 1 1\nmap_Kd {PICTURE}\nnewmtl parts\nKd 0.2 0.4 0.8\n"
-    (folder / LIBRARY).write_text(library, encoding="utf-8")
+    PIL.Image.fromarray(picture).save(folder / PICTURE_NAME)
+    library = f"newmtl skin\nKd 1 1 1\nmap_Kd {PICTURE_NAME}\nnewmtl parts\nKd 0.2 0.4 0.8\n"
+    (folder / LIBRARY_NAME).write_text(library, encoding="utf-8")
     landmarks = folder / "whole.json"
     numbers = np.asarray(scene.landmarks) + places["skin"].start
     landmarks.write_text(json.dumps({"landmarks": numbers.tolist()}))

@@ -24,7 +24,7 @@ from tests.heads import user_head
 from .command_line import risorius
 
 SIZE = (150, 170)
-BOTH = AnatomyView(STRUCTURES)
+BOTH_STRUCTURES = AnatomyView(STRUCTURES)
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def posed(scene, **pose):
 def structures_of(studio, **pose):
     """Muscles and skull of the face in a pose."""
     posed(studio.scene, **pose)
-    parts = [each.part for each in studio.pipeline.anatomy.dissect(BOTH).parts]
+    parts = [each.part for each in studio.pipeline.anatomy.dissect(BOTH_STRUCTURES).parts]
     return [part for part in parts if part.name.startswith(("skull", "muscles"))]
 
 
@@ -82,7 +82,7 @@ def test_skin_that_hides_everything_is_drawn_as_ever(studio):
     usual = picture(studio, AnatomyView())
     assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)
     assert np.array_equal(picture(studio, AnatomyView((), 0.2)), usual)
-    assert (picture(studio, BOTH) != usual).mean() > 0.3
+    assert (picture(studio, BOTH_STRUCTURES) != usual).mean() > 0.3
     assert np.array_equal(picture(studio, AnatomyView()), usual)  # and leaves nothing behind
 
 
@@ -137,7 +137,7 @@ def test_a_users_head_has_muscles_and_a_skull(tmp_path):
     anatomy = Anatomy(scene)
     low = scene.rest_positions.min(axis=0)
     high = scene.rest_positions.max(axis=0)
-    parts = {each.part.name: each.part for each in anatomy.dissect(BOTH).parts}
+    parts = {each.part.name: each.part for each in anatomy.dissect(BOTH_STRUCTURES).parts}
     for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
         points = parts[name].vertices
         assert np.isfinite(points).all()
@@ -147,7 +147,7 @@ def test_a_users_head_has_muscles_and_a_skull(tmp_path):
     assert parts["skull_cranium"].vertices[:, 2].min() < low[2] + 8.0
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
-    anatomy.dissect(BOTH)
+    anatomy.dissect(BOTH_STRUCTURES)
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 
@@ -158,7 +158,7 @@ def test_the_coarse_head_has_muscles_and_a_skull():
     front of the spine, of which a vertebra showed through it.
     """
     scene = FaceScene(coarse_head())
-    parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH).parts}
+    parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH_STRUCTURES).parts}
     low = scene.rest_positions.min(axis=0) - 12.0
     high = scene.rest_positions.max(axis=0) + 2.0
     for name in ("skull_cranium", "skull_mandible", "muscles"):
@@ -254,7 +254,7 @@ def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
     monkeypatch.setattr("risorius.app.anatomy.neck_sections", no_sections)
     anatomy = Anatomy(FaceScene())
     for _ in range(2):
-        anatomy.dissect(BOTH)
+        anatomy.dissect(BOTH_STRUCTURES)
     assert len(searched) == 1
 
 

@@ -14,18 +14,18 @@ import pytest
 from .command_line import refusal, risorius, started, succeeded
 from .test_workers import is_running, wait_until
 
-SCRIPT = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
+SCRIPT_FORM = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
 POSES = ("joy", "sadness", "fear")
-SMALL = "--size 64x48 --fps 20"
-LIST = f"""
+SMALL_OPTIONS = "--size 64x48 --fps 20"
+LIST_TEXT = f"""
 # frames, a film and a clip
-capture joy.toml -o joy {SMALL}
-  capture 'sadness.toml' -o "films/sadness it is.mp4" {SMALL}
+capture joy.toml -o joy {SMALL_OPTIONS}
+  capture 'sadness.toml' -o "films/sadness it is.mp4" {SMALL_OPTIONS}
 
 export fear.toml -o fear.npz --fps 20
 """
-FILM = "films/sadness it is.mp4"
-MADE = ("joy", FILM, "fear.npz")
+FILM_NAME = "films/sadness it is.mp4"
+MADE_FILES = ("joy", FILM_NAME, "fear.npz")
 
 
 @pytest.fixture(autouse=True)
@@ -33,8 +33,8 @@ def scripts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A folder of scripts and a list, as the test's working directory."""
     monkeypatch.chdir(tmp_path)
     for pose in POSES:
-        Path(f"{pose}.toml").write_text(SCRIPT.format(0.5, pose))
-    Path("clips.txt").write_text(LIST)
+        Path(f"{pose}.toml").write_text(SCRIPT_FORM.format(0.5, pose))
+    Path("clips.txt").write_text(LIST_TEXT)
 
 
 def batch(*arguments):
@@ -67,24 +67,24 @@ def test_a_list_is_done_and_not_done_again():
     assert statuses() == ["ok"] * 3
     assert list(rows()) == [3, 4, 6]
     assert all(row["frames"] == "11" and float(row["seconds"]) > 0 for row in rows().values())
-    made = contents(*MADE)
+    made = contents(*MADE_FILES)
     assert len(made) == 2 + 11
     log = Path("clips_logs/line_0003.log").read_text()
     assert log.startswith("risorius capture joy.toml")
     assert "joy: " in log
 
-    alone = f"capture sadness.toml -o alone.mp4 {SMALL} --quiet".split()
+    alone = f"capture sadness.toml -o alone.mp4 {SMALL_OPTIONS} --quiet".split()
     succeeded(*alone)
-    assert Path("alone.mp4").read_bytes() == made[FILM]
+    assert Path("alone.mp4").read_bytes() == made[FILM_NAME]
 
     assert batch("--resume").exit_code == 0
     assert statuses() == ["skipped"] * 3
-    Path("sadness.toml").write_text(SCRIPT.format(0.25, "sadness"))
+    Path("sadness.toml").write_text(SCRIPT_FORM.format(0.25, "sadness"))
     Path("fear.npz").unlink()
     assert batch("--resume").exit_code == 0
     assert statuses() == ["skipped", "ok", "ok"]
-    again = contents(*MADE)
-    assert {name for name in made if again.get(name) != made[name]} == {FILM}
+    again = contents(*MADE_FILES)
+    assert {name for name in made if again.get(name) != made[name]} == {FILM_NAME}
     assert batch("--resume").exit_code == 0
     assert statuses() == ["skipped"] * 3
 
@@ -154,14 +154,14 @@ def test_one_line_fails_alone():
     `--resume` tries it again.
     """
     Path("silent.wav").write_text("no sound")
-    Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT.format(0.5, "sadness"))
+    Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT_FORM.format(0.5, "sadness"))
     ended = batch("--jobs", "1")
     assert ended.exit_code == 1
     assert statuses() == ["ok", "failed", "ok"]
     assert "silent.wav" in rows()[4]["error"]
     assert not contents("films")
     assert [line for line in ended.stderr.splitlines() if "clips.txt:4: " in line]
-    Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
+    Path("sadness.toml").write_text(SCRIPT_FORM.format(0.5, "sadness"))
     assert batch("--resume").exit_code == 0
     assert statuses() == ["skipped", "ok", "skipped"]
 
@@ -187,9 +187,11 @@ def test_a_cluster_gives_the_results_of_this_machine(cluster):
 def films(count):
     """A list of this number of films, and their names."""
     for number in range(count):
-        script = SCRIPT.format(1 + number / 20, "amplitude")
+        script = SCRIPT_FORM.format(1 + number / 20, "amplitude")
         Path(f"{number}.toml").write_text(f'scene = "plane"\n{script}')
-    lines = [f"capture {number}.toml -o made/{number}.mp4 {SMALL}" for number in range(count)]
+    lines = [
+        f"capture {number}.toml -o made/{number}.mp4 {SMALL_OPTIONS}" for number in range(count)
+    ]
     Path("clips.txt").write_text("\n".join(lines))
     return [f"{number}.mp4" for number in range(count)]
 

@@ -5,14 +5,14 @@ import numpy as np
 from risorius import render
 from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_sheet, labels
 
-GREY = np.full((200, 400, 3), 128, np.uint8)
+GREY_PICTURE = np.full((200, 400, 3), 128, np.uint8)
 
 
 def test_a_caption_for_each_half_and_a_line_between():
     """Each half has text in its outer corner, with a line between; the image is unchanged."""
     halves = [(0, 0, 200, 200), (200, 0, 200, 200)]
     made = labels(["static", "kahler"], halves, has_bar=False)
-    with_captions = captioned(GREY, made, [0, 200])
+    with_captions = captioned(GREY_PICTURE, made, [0, 200])
     is_drawn = (with_captions != 128).any(axis=2)
     assert is_drawn[:, 200].all()
     text = is_drawn.copy()
@@ -21,7 +21,7 @@ def test_a_caption_for_each_half_and_a_line_between():
     assert text[150:, :100].any()
     assert text[150:, 300:].any()
     assert not text[:, 100:300].any()
-    assert (GREY == 128).all()
+    assert (GREY_PICTURE == 128).all()
 
 
 def test_a_caption_without_room_is_left_out():

@@ -12,7 +12,7 @@ from .command_line import risorius, succeeded
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-SMILE = """
+SMILE_SCRIPT = """
 title = "Smile"
 [[pose]]
 time = 0.0
@@ -27,7 +27,7 @@ joy = 1.0
 def smile(tmp_path: Path) -> Path:
     """A short script."""
     path = tmp_path / "smile.toml"
-    path.write_text(SMILE)
+    path.write_text(SMILE_SCRIPT)
     return path
 
 

@@ -25,20 +25,20 @@ from risorius.assets import Segment
 
 from .command_line import refusal, risorius
 
-COUNT = 4
+SAMPLE_COUNT = 4
 SEED = 11
 SIZE = (80, 64)
 PASSES = ("depth", "normal", "segmentation")
-ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
-OPTIONS = (
+FILE_ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
+DATASET_OPTIONS = (
     "--seed", str(SEED), "--size", "x".join(map(str, SIZE)), "--passes", ",".join(PASSES),
     "--quiet",
 )  # fmt: skip
 
 
-def run(folder, *options, count=COUNT):
+def run(folder, *options, count=SAMPLE_COUNT):
     """Run the command in this process; its workers are other processes."""
-    return risorius("dataset", "--count", count, "-o", folder, *OPTIONS, *options)
+    return risorius("dataset", "--count", count, "-o", folder, *DATASET_OPTIONS, *options)
 
 
 def content(folder):
@@ -52,22 +52,24 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("set") / "made"
     result = run(folder, "--jobs", "2")
     assert result.exit_code == 0, result.output
-    assert result.output.startswith(f"{folder}: {COUNT} samples, {COUNT} of them new")
+    assert result.output.startswith(f"{folder}: {SAMPLE_COUNT} samples, {SAMPLE_COUNT} of them new")
     return folder
 
 
 @pytest.fixture(scope="module")
 def samples(made: Path) -> list[dict[str, Any]]:
     """The labels of all samples."""
-    return [json.loads((made / f"{k:06d}.json").read_text("utf-8")) for k in range(COUNT)]
+    return [json.loads((made / f"{k:06d}.json").read_text("utf-8")) for k in range(SAMPLE_COUNT)]
 
 
 def test_a_set_has_these_files_and_nothing_else(made, samples):
     """A set has exactly these files; no picture and no face occurs twice."""
     message = {"README.md", "dataset.json", "index.csv"}
-    assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
-    assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
-    assert len({str(sample["controls"]) for sample in samples}) == COUNT
+    assert set(content(made)) == message | {
+        f"{k:06d}{end}" for k in range(SAMPLE_COUNT) for end in FILE_ENDS
+    }
+    assert len({(made / f"{k:06d}.png").read_bytes() for k in range(SAMPLE_COUNT)}) == SAMPLE_COUNT
+    assert len({str(sample["controls"]) for sample in samples}) == SAMPLE_COUNT
 
 
 def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
@@ -76,7 +78,7 @@ def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
     studio = Studio(request)
     for index in (3, 0):
         studio.shoot(index).save(tmp_path / f"{index:06d}.png")
-        for name in [f"{index:06d}{end}" for end in ENDS if end != ".json"]:
+        for name in [f"{index:06d}{end}" for end in FILE_ENDS if end != ".json"]:
             assert (tmp_path / name).read_bytes() == (made / name).read_bytes(), name
         alone, labels = (
             json.loads((folder / f"{index:06d}.json").read_text("utf-8"))
@@ -102,8 +104,8 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
     instead = [
-        *((f"000001{end}", None) for end in ENDS),
-        *((f"000001{end}", b"") for end in ENDS),
+        *((f"000001{end}", None) for end in FILE_ENDS),
+        *((f"000001{end}", b"") for end in FILE_ENDS),
         ("000001.json", labels[:-1][: len(labels) // 2]),
         ("000001.json", labels[:-2]),
         ("000001.json", b"\xff\xfe\x00"),
@@ -120,12 +122,14 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
     held = SetFolder(folder)
-    assert all(held.has(index) for index in range(COUNT))
+    assert all(held.has(index) for index in range(SAMPLE_COUNT))
     for name, damaged in instead:
         (folder / name).unlink()
         if damaged is not None:
             (folder / name).write_bytes(damaged)
-        assert [held.has(index) for index in range(COUNT)] == [k != 1 for k in range(COUNT)], name
+        assert [held.has(index) for index in range(SAMPLE_COUNT)] == [
+            k != 1 for k in range(SAMPLE_COUNT)
+        ], name
         shutil.copyfile(made / name, folder / name)
     (folder / "000001_seg.png").unlink()
     (folder / "000001_seg.png").mkdir()
@@ -167,7 +171,7 @@ def test_a_set_begins_anywhere(made, tmp_path):
     """A set that begins later has the same samples, and can be completed from 0 on."""
     folder = tmp_path / "part"
     assert run(folder, "--first", 2, count=2).exit_code == 0
-    for end in ENDS:
+    for end in FILE_ENDS:
         assert not (folder / f"000001{end}").exists()
         name = f"000003{end}"
         assert (folder / name).read_bytes() == (made / name).read_bytes()
@@ -231,11 +235,11 @@ def test_the_index_has_a_row_for_each_sample(made, samples):
 def test_the_card_lists_the_contents_of_the_set(made, samples):
     card = (made / "README.md").read_text("utf-8")
     (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
-    assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
+    assert command.startswith(f"dataset --count {SAMPLE_COUNT} --seed {SEED}")
     for file in ("index.csv", "dataset.json"):
         assert f"`{file}`" in card
     for unit in ("AU12", "AU25"):
-        share = sum(sample["action_units"][unit] >= 0.05 for sample in samples) / COUNT
+        share = sum(sample["action_units"][unit] >= 0.05 for sample in samples) / SAMPLE_COUNT
         assert (f"| {unit} | {share:.1%} |" in card) == (share > 0)
     assert "{" not in card
 

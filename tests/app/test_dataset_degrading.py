@@ -10,24 +10,24 @@ from risorius.app.dataset.degrading import Degradation, degraded
 
 from .command_line import succeeded
 
-CLEAN = Degradation(0.0, 0.0, None, 5)
-GREY = np.full((120, 120, 3), 128, np.uint8)
+CLEAN_PICTURE = Degradation(0.0, 0.0, None, 5)
+GREY_PICTURE = np.full((120, 120, 3), 128, np.uint8)
 
 
 def test_none_of_it_changes_nothing():
     """Without degradation every byte stays the same."""
     image = np.random.default_rng(1).integers(0, 256, (30, 40, 3)).astype(np.uint8)
-    assert np.array_equal(degraded(image, CLEAN), image)
+    assert np.array_equal(degraded(image, CLEAN_PICTURE), image)
 
 
 def test_noise_deviates_by_as_many_levels():
     """Noise has the given deviation in grey levels in each channel, and follows the seed."""
-    noisy = degraded(GREY, Degradation(0.0, 6.0, None, 5))
+    noisy = degraded(GREY_PICTURE, Degradation(0.0, 6.0, None, 5))
     assert noisy.std(axis=(0, 1)) == pytest.approx(6.0, rel=0.05)
     channels = noisy.reshape(-1, 3).astype(float)
     assert abs(np.corrcoef(channels.T)[0, 1]) < 0.05
-    assert np.array_equal(noisy, degraded(GREY, Degradation(0.0, 6.0, None, 5)))
-    assert not np.array_equal(noisy, degraded(GREY, Degradation(0.0, 6.0, None, 6)))
+    assert np.array_equal(noisy, degraded(GREY_PICTURE, Degradation(0.0, 6.0, None, 5)))
+    assert not np.array_equal(noisy, degraded(GREY_PICTURE, Degradation(0.0, 6.0, None, 6)))
 
 
 def test_blur_is_that_of_light():

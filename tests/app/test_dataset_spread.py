@@ -30,9 +30,9 @@ from risorius.faces import UNITS, Faces
 
 from .test_dataset import content
 
-COUNT = int(os.environ.get("SAMPLES", "5"))
-SHARD = 2
-KILLS = int(os.environ.get("KILLS", "3"))
+SAMPLE_COUNT = int(os.environ.get("SAMPLES", "5"))
+SAMPLES_PER_SHARD = 2
+KILL_COUNT = int(os.environ.get("KILLS", "3"))
 
 
 def request_for(folder: Path, shards: int | None = None) -> SetRequest:
@@ -44,7 +44,7 @@ def request_for(folder: Path, shards: int | None = None) -> SetRequest:
 def loose(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set of single files."""
     folder = tmp_path_factory.mktemp("loose") / "set"
-    make_set(request_for(folder), COUNT, progress=False)
+    make_set(request_for(folder), SAMPLE_COUNT, progress=False)
     return folder
 
 
@@ -55,9 +55,9 @@ def packed(loose: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder.mkdir()
     for file in loose.glob("0*"):
         shutil.copy(file, folder)
-    request = request_for(folder, SHARD)
+    request = request_for(folder, SAMPLES_PER_SHARD)
     (folder / "dataset.json").write_text(json.dumps(request.options(), indent=1) + "\n", "utf-8")
-    made = make_set(request, COUNT, resume=True, progress=False)
+    made = make_set(request, SAMPLE_COUNT, resume=True, progress=False)
     assert made.new == 0
     return folder
 
@@ -98,7 +98,7 @@ def test_the_reader_reads_both(loose, packed, kind):
     """The reader returns pictures and labels from single files and from shards."""
     folder = {"loose": loose, "packed": packed}[kind]
     faces = Faces(folder)
-    assert len(faces) == COUNT
+    assert len(faces) == SAMPLE_COUNT
     sample = faces[2]
     assert sample["image"].shape == (3, 40, 48)
     assert 0.0 <= sample["image"].min() < sample["image"].max() <= 1.0
@@ -109,7 +109,7 @@ def test_the_reader_reads_both(loose, packed, kind):
     assert faces.files(3)["png"] == (loose / "000003.png").read_bytes()
     assert faces.files(3)["ldmks.txt"] == (loose / "000003_ldmks.txt").read_bytes()
     training, testing = faces.split(0.5)
-    assert sorted(training + testing) == [*range(COUNT)]
+    assert sorted(training + testing) == [*range(SAMPLE_COUNT)]
     persons = [{faces.rows[k]["person_number"] for k in some} for some in (training, testing)]
     assert persons[0].isdisjoint(persons[1])
 
@@ -156,7 +156,9 @@ def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
     if end == "no tar":
         shard.unlink()
     (folder / "000002.png").write_bytes(b"left by a process that was killed")
-    made = make_set(request_for(folder, SHARD), COUNT, resume=True, progress=False)
+    made = make_set(
+        request_for(folder, SAMPLES_PER_SHARD), SAMPLE_COUNT, resume=True, progress=False
+    )
     assert made.new == {"cut": 1, "empty": 2, "no listing": 0, "no tar": 2}[end]
     assert content(folder) == content(packed)
 
@@ -166,8 +168,8 @@ def test_a_shard_grows_with_its_set(loose, packed, tmp_path):
     folder = SetFolder(tmp_path)
     for file in loose.glob("0*"):
         shutil.copy(file, tmp_path)
-    for count in (3, COUNT):
-        packing = Packing(folder, SHARD, range(count))
+    for count in (3, SAMPLE_COUNT):
+        packing = Packing(folder, SAMPLES_PER_SHARD, range(count))
         packing.begin()
         packing.expect([])
         for number in range(count):
@@ -265,7 +267,7 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
                 pass  # a worker is lost during work, on any machine
             workers[0].kill()
             workers.append(joined(address))
-            while len(workers) < 2 + KILLS and not is_made.wait(moments.uniform(8.0, 16.0)):
+            while len(workers) < 2 + KILL_COUNT and not is_made.wait(moments.uniform(8.0, 16.0)):
                 moments.choice([each for each in workers if each.poll() is None]).kill()
                 workers.append(joined(address))
 
@@ -273,8 +275,8 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
         loser = threading.Thread(target=lose_computers)
         loser.start()
         try:
-            request = request_for(folder, SHARD)
-            make_set(request, COUNT, scheduler=address, progress=False)
+            request = request_for(folder, SAMPLES_PER_SHARD)
+            make_set(request, SAMPLE_COUNT, scheduler=address, progress=False)
         finally:
             is_made.set()
             loser.join()

@@ -38,7 +38,7 @@ def ask(*options):
     return risorius("doctor", *options)
 
 
-PARTS = ("offscreen", "window", "films")
+CHECKED_PARTS = ("offscreen", "window", "films")
 
 
 def test_every_command_is_said_to_work_or_not(machine_without):
@@ -53,14 +53,14 @@ def test_every_command_is_said_to_work_or_not(machine_without):
 
 
 @pytest.mark.parametrize(
-    "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
+    "missing", [each for count in range(4) for each in itertools.combinations(CHECKED_PARTS, count)]
 )
 def test_the_verdict_agrees_with_the_parts(machine_without, missing):
     """For each missing part, its line, the summary and the exit code agree."""
     machine_without(*missing)
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
-    for part in PARTS:
+    for part in CHECKED_PARTS:
         assert lines[part].startswith("no." if part in missing else "yes.")
     assert ("Everything is there." in result.output) == (not missing)
     assert lines.get("Missing", "").startswith(", ".join(missing))

@@ -13,8 +13,8 @@ from .command_line import refusal, risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-SCRIPT = 'scene = "plane"\nduration = 0.2\n[[pose]]\ntime = 0.0\namplitude = 1.0\n'
-FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
+PLANE_SCRIPT = 'scene = "plane"\nduration = 0.2\n[[pose]]\ntime = 0.0\namplitude = 1.0\n'
+FACE_SCRIPT = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
 OUTPUTS = {
     each.name: f"out{each.suffixes[0]}" if each.suffixes else "out"
     for each in MOTION_FORMATS
@@ -42,8 +42,8 @@ with report_user_errors():
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a script, as the working directory."""
     monkeypatch.chdir(tmp_path)
-    Path("plane.toml").write_text(SCRIPT)
-    Path("face.toml").write_text(FACE)
+    Path("plane.toml").write_text(PLANE_SCRIPT)
+    Path("face.toml").write_text(FACE_SCRIPT)
     return tmp_path
 
 

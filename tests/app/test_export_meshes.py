@@ -27,9 +27,9 @@ from .command_line import positions_in_blender
 Points = npt.NDArray[np.float64]
 
 RATE = 24.0  # frames per second
-FRAMES = 8
+FRAME_COUNT = 8
 TOLERANCE = 1e-3  # [mm], error of single precision at a head's size
-METRES = 0.001
+METRES_PER_MILLIMETRE = 0.001
 SCRIPT = """
 duration = 0.3
 [[pose]]
@@ -42,7 +42,7 @@ tongue_out = 0.6
 gaze_horizontal = 0.5
 head_yaw = 0.4
 """
-REFINED = Refinement()
+DEFAULT_REFINEMENT = Refinement()
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def whole(clip, frame):
 
 def refined_skins(clip):
     """Points and triangles of the refined skin in each frame."""
-    meshes = clip.refined(REFINED)
+    meshes = clip.refined(DEFAULT_REFINEMENT)
     return [(mesh.positions.astype(float), mesh.triangles.copy()) for mesh in meshes]
 
 
@@ -89,15 +89,15 @@ def test_usd_has_every_surface_in_every_frame(clip, tmp_path):
     """The stage has the right rate, unit, axis and frames; points are exact to 0.001 mm."""
     stage = Usd.Stage.Open(str(written(clip, tmp_path / "face.usdz")))
     assert stage.GetTimeCodesPerSecond() == stage.GetFramesPerSecond() == RATE
-    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, FRAMES - 1)
-    assert UsdGeom.GetStageMetersPerUnit(stage) == METRES
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, FRAME_COUNT - 1)
+    assert UsdGeom.GetStageMetersPerUnit(stage) == METRES_PER_MILLIMETRE
     assert UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y
     for surface in clip.surfaces:
         mesh = UsdGeom.Mesh(stage.GetPrimAtPath(f"/face/{surface.name}"))
         assert mesh.GetSubdivisionSchemeAttr().Get() == UsdGeom.Tokens.none
         indices = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
         assert np.array_equal(indices, surface.faces)
-        for frame in range(FRAMES):
+        for frame in range(FRAME_COUNT):
             assert is_near(usd_points(stage, surface.name, frame), surface.at(frame))
             low, high = np.array(mesh.GetExtentAttr().Get(frame))
             points = np.array(mesh.GetPointsAttr().Get(frame))
@@ -141,7 +141,7 @@ def test_usd_is_sound(clip, tmp_path):
 
 def test_usd_has_the_refined_skin(clip, tmp_path):
     """Each frame has its own triangles, with normals and texture coordinates for every point."""
-    path = written(clip, tmp_path / "fine.usdz", refinement=REFINED)
+    path = written(clip, tmp_path / "fine.usdz", refinement=DEFAULT_REFINEMENT)
     stage = Usd.Stage.Open(str(path))
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
     counts = set()
@@ -184,7 +184,7 @@ def test_vtkhdf_has_every_frame(clip, tmp_path):
     """VTK reads times, points, triangles and attributes; the triangles are stored once."""
     path = written(clip, tmp_path / "face.vtkhdf")
     steps = vtk_steps(path)
-    assert np.allclose([time for time, _ in steps], np.arange(FRAMES) / RATE)
+    assert np.allclose([time for time, _ in steps], np.arange(FRAME_COUNT) / RATE)
     rest = np.concatenate([each.rest for each in clip.surfaces])
     for frame, (_, data) in enumerate(steps):
         points = vtk_to_numpy(data.GetPoints().GetData())
@@ -221,11 +221,13 @@ def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
     data = written(clip, tmp_path / "face.pc2").read_bytes()
     head = struct.unpack("<12siiffi", data[:32])
     vertices = len(whole(clip, 0))
-    assert head == (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, FRAMES)
-    points = np.frombuffer(data[32:], "<f4").reshape(FRAMES, vertices, 3)
-    for frame in range(FRAMES):
-        assert is_near(points[frame], whole(clip, frame), METRES)
-    assert is_near(obj_rows(tmp_path / "face.obj", "v")[:, :3], whole(clip, 0), METRES)
+    assert head == (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, FRAME_COUNT)
+    points = np.frombuffer(data[32:], "<f4").reshape(FRAME_COUNT, vertices, 3)
+    for frame in range(FRAME_COUNT):
+        assert is_near(points[frame], whole(clip, frame), METRES_PER_MILLIMETRE)
+    assert is_near(
+        obj_rows(tmp_path / "face.obj", "v")[:, :3], whole(clip, 0), METRES_PER_MILLIMETRE
+    )
     assert sorted(each.name for each in tmp_path.iterdir()) == [
         *("face.mtl", "face.obj", "face.pc2", "face_skin.png"),
     ]
@@ -242,12 +244,12 @@ def triangles_in(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
+@pytest.mark.parametrize("refinement", [None, DEFAULT_REFINEMENT], ids=["mesh", "refined"])
 def test_sequences_have_every_frame(clip, tmp_path, refinement):
     """Frames are numbered in order; triangles are those of the clip, lit from outside."""
     folder = written(clip, tmp_path / "frames", "obj", refinement)
     meshes = sorted(folder.glob("*.obj"))
-    assert [each.stem for each in meshes] == [f"frame_{n:05d}" for n in range(FRAMES)]
+    assert [each.stem for each in meshes] == [f"frame_{n:05d}" for n in range(FRAME_COUNT)]
     skins = None if refinement is None else refined_skins(clip)
     for frame, path in enumerate(meshes):
         wanted = [each.at(frame)[each.faces] for each in clip.surfaces]
@@ -255,7 +257,7 @@ def test_sequences_have_every_frame(clip, tmp_path, refinement):
             points, triangles = skins[frame]
             wanted[0] = points[triangles]
         corners, normals = triangles_in(path)
-        assert is_near(corners, np.concatenate(wanted), METRES)
+        assert is_near(corners, np.concatenate(wanted), METRES_PER_MILLIMETRE)
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         assert np.mean((normals.mean(axis=1) * across).sum(axis=1) >= 0.0) > 0.99
     assert np.allclose(
@@ -269,9 +271,9 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip, tmp_path):
     Texture coordinates have their own numbers.
     """
     folder = written(clip, tmp_path / "frames", "obj")
-    path = folder / f"frame_{FRAMES - 1:05d}.obj"
+    path = folder / f"frame_{FRAME_COUNT - 1:05d}.obj"
     rows = obj_rows(path, "v")
-    assert is_near(rows[:, :3], whole(clip, FRAMES - 1), METRES)
+    assert is_near(rows[:, :3], whole(clip, FRAME_COUNT - 1), METRES_PER_MILLIMETRE)
     assert rows.shape[1] == 6
     assert rows[:, 3:].min() >= 0.0
     assert rows[:, 3:].max() <= 1.0
@@ -298,7 +300,9 @@ def test_npz_has_all_of_a_clip(clip, tmp_path):
         for surface in clip.surfaces[1:]:
             part = f"parts/{surface.name}"
             rest = arrays[f"{part}/rest_positions"]
-            shapes = arrays[f"{part}/shapes"] if f"{part}/shapes" in arrays else [rest] * FRAMES
+            shapes = (
+                arrays[f"{part}/shapes"] if f"{part}/shapes" in arrays else [rest] * FRAME_COUNT
+            )
             for frame, matrix in enumerate(arrays[f"{part}/matrices"]):
                 points = shapes[frame] @ matrix[:3, :3].T + matrix[:3, 3]
                 assert is_near(points, surface.at(frame))
@@ -312,14 +316,18 @@ def test_npz_has_all_of_a_clip(clip, tmp_path):
 def test_blender_sees_the_same(clip, tmp_path, name):
     """Blender imports the file, and has each vertex at its place in every frame."""
     is_fine = name.startswith("fine")
-    path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)
-    found = positions_in_blender(path, tmp_path, RATE, FRAMES)
+    path = written(clip, tmp_path / name, refinement=DEFAULT_REFINEMENT if is_fine else None)
+    found = positions_in_blender(path, tmp_path, RATE, FRAME_COUNT)
     with np.load(found) as positions:
-        for frame in range(FRAMES):
+        for frame in range(FRAME_COUNT):
             if name.endswith("pc2"):
-                assert is_near(positions["face"][frame], whole(clip, frame), METRES)
+                assert is_near(positions["face"][frame], whole(clip, frame), METRES_PER_MILLIMETRE)
                 continue
             for surface in clip.surfaces[is_fine:]:
-                assert is_near(positions[surface.name][frame], surface.at(frame), METRES)
+                assert is_near(
+                    positions[surface.name][frame], surface.at(frame), METRES_PER_MILLIMETRE
+                )
             if is_fine:
-                assert is_near(positions[f"skin/{frame}"], refined_skins(clip)[frame][0], METRES)
+                assert is_near(
+                    positions[f"skin/{frame}"], refined_skins(clip)[frame][0], METRES_PER_MILLIMETRE
+                )

@@ -10,7 +10,7 @@ from pathlib import Path
 from risorius.app.cli.doctor import MODULES_OF_EXTRAS
 
 ROOT = Path(__file__).parents[2]
-WITHOUT = f"""
+MISSING_PROGRAM = f"""
 import sys
 class Missing:
     def find_spec(self, name, path=None, target=None):
@@ -18,8 +18,8 @@ class Missing:
             raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 sys.meta_path.insert(0, Missing())
 """
-RUN = "from risorius.__main__ import run; run()"
-EACH = """
+RUN_PROGRAM = "from risorius.__main__ import run; run()"
+IMPORTS_PROGRAM = """
 import json
 from click.testing import CliRunner
 from risorius.__main__ import command
@@ -42,11 +42,11 @@ ask([], main)
 """
 
 
-def plain(*words, folder, code=RUN):
+def plain(*words, folder, code=RUN_PROGRAM):
     """The command as installed by `pip install risorius`."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
-        [sys.executable, "-c", WITHOUT + code, *words],
+        [sys.executable, "-c", MISSING_PROGRAM + code, *words],
         cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
 
@@ -55,7 +55,7 @@ def each_of(*commands, folder):
     """Exit codes and error lines of commands, run in order in one process."""
     (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
     (folder / "list.txt").write_text("export --set joy -o joy.npz\n")
-    ended = plain(*commands, folder=folder, code=EACH)
+    ended = plain(*commands, folder=folder, code=IMPORTS_PROGRAM)
     assert ended.returncode == 0, ended.stderr
     return [
         (code, [line for line in message.splitlines() if not line.startswith("Compiling")])

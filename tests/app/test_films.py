@@ -21,15 +21,15 @@ from .command_line import succeeded
 Image = npt.NDArray[np.uint8]
 WIDTH = 97
 HEIGHT = 63
-COUNT = 12
+FRAME_COUNT = 12
 RATE = 25.0
-SMALL = CaptureOptions(size=(64, 48), samples=0)
+SMALL_OPTIONS = CaptureOptions(size=(64, 48), samples=0)
 
 
 def numbered_frames():
     """Pictures of a bar that moves one step to the right in each picture."""
     frames = []
-    for number in range(COUNT):
+    for number in range(FRAME_COUNT):
         frame = np.full((HEIGHT, WIDTH, 3), 60, np.uint8)
         frame[:, 7 * number : 7 * number + 14] = 200, 150, 120
         frames.append(frame)
@@ -77,11 +77,11 @@ def test_frames_are_in_order_and_complete(tmp_path, suffix):
     is_even = suffix == ".mp4"  # H.264 needs even sizes, so the last row and column are cut
     size = (WIDTH - is_even, HEIGHT - is_even)
     found = decoded(path, size)
-    assert len(found) == COUNT
+    assert len(found) == FRAME_COUNT
     for picture, frame in zip(found, frames, strict=True):
         off = np.abs(picture.astype(int) - frame[: size[1], : size[0]])
         assert off.mean() < 6.0  # the next frame differs by 20
-    assert seconds_of(path) == pytest.approx(COUNT / RATE, abs=0.02)
+    assert seconds_of(path) == pytest.approx(FRAME_COUNT / RATE, abs=0.02)
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -110,7 +110,7 @@ def test_a_transparent_picture_lies_over_any_colour(samples, colour):
     pictures = []
     for behind in (background, None):
         style = render.Style(background=behind)
-        options = replace(SMALL, size=(160, 120), samples=samples, style=style)
+        options = replace(SMALL_OPTIONS, size=(160, 120), samples=samples, style=style)
         with Capture(FaceScene(), options) as studio:
             pictures.append(studio.draw_image())
             has_samples = studio.surface.samples > 1

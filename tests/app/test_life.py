@@ -22,7 +22,7 @@ from risorius.assets import load
 
 from .command_line import succeeded
 
-NOBODY = frozenset[str]()
+NO_CONTROLS = frozenset[str]()
 
 
 def test_angles_are_those_of_the_rig():
@@ -144,7 +144,7 @@ def _look(scene, viewer):
     idle = Idle(scene)
     scene.reset()
     for _ in range(90):
-        scene.pose(idle.amounts(NOBODY, viewer, 0.0, is_still=True))
+        scene.pose(idle.amounts(NO_CONTROLS, viewer, 0.0, is_still=True))
         scene.step(1.0 / 60.0)
 
 
@@ -155,7 +155,7 @@ def test_controls_moved_by_others_are_left_alone(scene):
     """
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
-    whole = idle.amounts(NOBODY, viewer, 5.6)
+    whole = idle.amounts(NO_CONTROLS, viewer, 5.6)
     assert {f"{LID_CONTROL}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
     for control, gone in (
         ("wink", LID_CONTROL),
@@ -174,9 +174,9 @@ def test_a_speaking_head_nods(scene):
     """A speaking head nods by at most two degrees, unless a script moves the head."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
-    silent = idle.amounts(NOBODY, viewer, 5.6)
+    silent = idle.amounts(NO_CONTROLS, viewer, 5.6)
     for opening, degrees in ((0.2, 0.8), (0.5, 2.0), (1.0, 2.0)):
-        nodding = idle.amounts(NOBODY, viewer, 5.6, opening=opening)
+        nodding = idle.amounts(NO_CONTROLS, viewer, 5.6, opening=opening)
         nod = 30.0 * (silent["head_pitch"] - nodding["head_pitch"])
         assert nod == pytest.approx(degrees)
         assert {**nodding, "head_pitch": silent["head_pitch"]} == silent

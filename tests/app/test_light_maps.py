@@ -20,7 +20,7 @@ from risorius.app.light_maps import check_light_map, read_light_map
 from risorius.geometry.colour import to_screen
 
 from .command_line import risorius, succeeded
-from .light_files import HEAD, pixels, rgbe, write_map
+from .light_files import HEADER, pixels, rgbe, write_map
 
 
 def packed(lines):
@@ -70,7 +70,7 @@ def test_radiance_is_read(tmp_path, is_packed):
     """Radiance files are read with and without runs, to the precision of their bytes."""
     path = tmp_path / "sky.hdr"
     content = rgbe(pixels())
-    path.write_bytes(HEAD + (packed(content) if is_packed else content.tobytes()))
+    path.write_bytes(HEADER + (packed(content) if is_packed else content.tobytes()))
     found = read_light_map(path).radiance
     assert_allclose(found[::4, ::4], pixels(), rtol=0.05, atol=0.01)
 
@@ -87,12 +87,16 @@ def test_openexr_is_read(tmp_path):
     [
         ("sky.png", b"", "is not a light map; give a file .hdr or .exr"),
         ("sky.hdr", b"nothing", "cannot be read as a light map"),
-        ("sky.hdr", HEAD + b"\2\2\0\x40" + b"\xff", "cannot be read as a light map"),
-        ("sky.hdr", HEAD.replace(b"64", b"32") + bytes(32 * 32 * 4), "has 32 x 32 pixels"),
-        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 32767 +X 65534"), "at most 32767 pixels wide"),
-        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 99999 +X 65535"), "has 65535 x 99999 pixels"),
-        ("sky.hdr", HEAD.replace(b"Y 32 +X 64", b"Y 0 +X 0"), "has 0 x 0 pixels"),
-        ("sky.hdr", HEAD + bytes(64 * 32 * 4), "is black"),
+        ("sky.hdr", HEADER + b"\2\2\0\x40" + b"\xff", "cannot be read as a light map"),
+        ("sky.hdr", HEADER.replace(b"64", b"32") + bytes(32 * 32 * 4), "has 32 x 32 pixels"),
+        (
+            "sky.hdr",
+            HEADER.replace(b"Y 32 +X 64", b"Y 32767 +X 65534"),
+            "at most 32767 pixels wide",
+        ),
+        ("sky.hdr", HEADER.replace(b"Y 32 +X 64", b"Y 99999 +X 65535"), "has 65535 x 99999 pixels"),
+        ("sky.hdr", HEADER.replace(b"Y 32 +X 64", b"Y 0 +X 0"), "has 0 x 0 pixels"),
+        ("sky.hdr", HEADER + bytes(64 * 32 * 4), "is black"),
         ("sky.exr", b"nothing", "cannot be read as a light map"),
     ],
 )
@@ -109,7 +113,7 @@ def test_others_are_refused_in_one_line(tmp_path, name, content, message):
 def test_a_header_reserves_no_memory(tmp_path, size):
     """A size that is wrong, or larger than the file, is refused before memory is reserved."""
     path = tmp_path / "sky.hdr"
-    path.write_bytes(HEAD.replace(b"Y 32 +X 64", size.encode()))
+    path.write_bytes(HEADER.replace(b"Y 32 +X 64", size.encode()))
     tracemalloc.start()
     with pytest.raises(UserError):
         read_light_map(path)
@@ -156,12 +160,12 @@ def test_a_changed_map_is_read_again(tmp_path):
     path = write_map(tmp_path / "sky.hdr")
     name = light_maps.open_light(path)
     first = light_maps.scene_light(name)
-    path.write_bytes(HEAD + rgbe(pixels()[:, ::-1].copy()).tobytes())
+    path.write_bytes(HEADER + rgbe(pixels()[:, ::-1].copy()).tobytes())
     assert light_maps.scene_light(name) is first
     light_maps.open_light(path)
     second = light_maps.scene_light(name)
     assert second.light.to_key[0] * first.light.to_key[0] < 0.0  # the sun is at the other side
-    path.write_bytes(HEAD)
+    path.write_bytes(HEADER)
     with pytest.raises(UserError, match=r"sky\.hdr"):
         light_maps.open_light(path)
     assert light_maps.scene_light(name) is second

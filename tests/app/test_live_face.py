@@ -23,8 +23,8 @@ from risorius.app.live.receiver import Receiver
 
 from .live_packets import live_link, osc, vmc
 
-VALUE = "/VMC/Ext/Blend/Val"
-APPLY = "/VMC/Ext/Blend/Apply"
+VALUE_ADDRESS = "/VMC/Ext/Blend/Val"
+APPLY_ADDRESS = "/VMC/Ext/Blend/Apply"
 
 
 class Clock:
@@ -197,15 +197,15 @@ def test_missing_values_stay(wire):
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_parts_of_a_frame_count_together(wire):
     """No control moves, and the window does not wake, before the message Apply."""
-    wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
+    wire.take(osc((VALUE_ADDRESS, "jawOpen", 0.5), (VALUE_ADDRESS, "eyeBlinkLeft", 0.6)))
     assert wire.face.state is State.WAITING
     assert not wire.face.channels
     assert not wire.woken
-    wire.take(osc((VALUE, "mouthPucker", 0.25)), osc((APPLY,)))
+    wire.take(osc((VALUE_ADDRESS, "mouthPucker", 0.25)), osc((APPLY_ADDRESS,)))
     assert wire.woken == 1
     wanted = {"jawOpen": 0.5, "mouthPucker": 0.25, "eyeBlinkLeft": 0.6}
     assert wire.face.channels == approx(wanted)
-    wire.take(osc((VALUE, "eyeBlinkLeft", 0.1), (APPLY,)))
+    wire.take(osc((VALUE_ADDRESS, "eyeBlinkLeft", 0.1), (APPLY_ADDRESS,)))
     assert wire.face.channels["eyeBlinkLeft"] == approx(0.1)
 
 

@@ -17,11 +17,11 @@ from risorius.app.recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES,
 
 from .live_packets import LIVE_LINK, SHAPES, live_link, osc, vmc
 
-VALUE = "/VMC/Ext/Blend/Val"
-APPLY = "/VMC/Ext/Blend/Apply"
-BONE = "/VMC/Ext/Bone/Pos"
-KINDS = tuple(PROTOCOLS)
-GOOD = {
+VALUE_ADDRESS = "/VMC/Ext/Blend/Val"
+APPLY_ADDRESS = "/VMC/Ext/Blend/Apply"
+BONE_ADDRESS = "/VMC/Ext/Bone/Pos"
+PROTOCOL_NAMES = tuple(PROTOCOLS)
+GOOD_PACKETS = {
     "livelink": live_link({name: 0.01 * index for index, name in enumerate(LIVE_LINK)}),
     "vmc": vmc({name: 0.5 for name in SHAPES[:6]}),
 }
@@ -88,7 +88,7 @@ def test_nonsense_among_values_is_left_out():
 def test_other_versions_and_every_torn_packet_are_none():
     """A packet of another version, or cut at any byte, is refused if values are required."""
     assert parse_live_link(live_link({}, version=5)) is None
-    packet = GOOD["livelink"]
+    packet = GOOD_PACKETS["livelink"]
     values = len(packet) - 4 * 61
     for end in set(range(len(packet))) - {values, values - 1}:
         assert parse_live_link(packet[:end]) is None, end
@@ -125,7 +125,7 @@ def test_vmc_bones_turn_in_unitys_axes(axis, angle, sign):
     """Unity's axes are left-handed: about y to the right, x down, z to the left shoulder."""
     half = math.radians(10.0)
     turn = [math.sin(half) * each for each in axis]
-    frame = parse_vmc(osc((BONE, "Head", 0.0, 0.0, 0.0, *map(float, turn), math.cos(half))))
+    frame = parse_vmc(osc((BONE_ADDRESS, "Head", 0.0, 0.0, 0.0, *map(float, turn), math.cos(half))))
     channels = channels_of(frame)
     assert frame is not None and frame.is_complete  # without shapes no Apply is needed
     assert channels[angle] == approx(sign * 20.0, abs=1e-4)
@@ -141,11 +141,11 @@ def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
     none = (0.0, 0.0, 0.0, 0.0)
     place = (0.0, 1.5, 0.0)
     packet = osc(
-        (BONE, "Neck", *place, *tenth),
-        (BONE, "Head", *place, *tenth),
-        (BONE, "LeftEye", *place, *tenth),
-        (BONE, "RightEye", *place, *none),
-        (BONE, "Hips", *place, *tenth),
+        (BONE_ADDRESS, "Neck", *place, *tenth),
+        (BONE_ADDRESS, "Head", *place, *tenth),
+        (BONE_ADDRESS, "LeftEye", *place, *tenth),
+        (BONE_ADDRESS, "RightEye", *place, *none),
+        (BONE_ADDRESS, "Hips", *place, *tenth),
     )
     channels = channels_of(parse_vmc(packet))
     assert channels["head_yaw"] == approx(-20.0, abs=1e-3)
@@ -156,7 +156,7 @@ def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
 @pytest.mark.parametrize("size", [-4, -8, -(2**31), 2**31 - 1, 5])
 def test_a_bundle_with_a_wrong_length_is_none(size):
     """A bundle with a negative length is refused, because reading it could loop for ever."""
-    inner = osc((APPLY,))[16:]
+    inner = osc((APPLY_ADDRESS,))[16:]
     assert parse_vmc(b"#bundle\0" + struct.pack(">Qi", 1, size) + inner) is None
 
 
@@ -173,7 +173,12 @@ def test_bundles_in_bundles_end_somewhere():
 
 def test_messages_that_we_do_not_read_are_passed_over(caplog):
     """Other addresses, values and unknown types are ignored, without a line in the log."""
-    packet = osc(("/VMC/Ext/OK", 1), (VALUE, 3, "JawOpen"), (VALUE, "JawOpen", 0.5), (APPLY,))
+    packet = osc(
+        ("/VMC/Ext/OK", 1),
+        (VALUE_ADDRESS, 3, "JawOpen"),
+        (VALUE_ADDRESS, "JawOpen", 0.5),
+        (APPLY_ADDRESS,),
+    )
     assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
     assert parse_vmc(b"/VMC/Ext/Blend/Val\0\0,zz\0") is None
     assert parse_vmc(osc(("/other", 1.0))) is None
@@ -205,11 +210,11 @@ def is_sound(frame):
     )
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", PROTOCOL_NAMES)
 @given(data=st.data())
 def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
     """Good packets with a part replaced by random bytes or text raise no error."""
-    good = GOOD[kind]
+    good = GOOD_PACKETS[kind]
     begin = data.draw(st.integers(0, len(good)))
     end = data.draw(st.integers(begin, len(good)))
     text = st.text(alphabet="|=#-&,.0123456789enaif_LR/\0jawOpen").map(str.encode)

@@ -18,7 +18,7 @@ from risorius.assets import Segment
 from risorius.assets.identities import MASK_COLOURS, make_person, sample_identity, wearing
 
 SIZE = (160, 160)
-COVERED = {Segment.TOP_LIP, Segment.BOTTOM_LIP, Segment.MOUTH_INTERIOR}
+COVERED_SEGMENTS = {Segment.TOP_LIP, Segment.BOTTOM_LIP, Segment.MOUTH_INTERIOR}
 POSES = {
     "rest": {},
     "smile": {"AU6": 1.0, "AU12": 1.0, "AU25": 1.0},
@@ -48,7 +48,7 @@ def test_lips_stay_behind_a_mask(number):
             pipeline.draw(camera, style, [Viewport(drawn, (0, 0, *SIZE))])
             images = passes.draw(camera, style, {"depth", "segmentation"})
             classes = images["segmentation"]
-            assert not np.isin(classes, list(COVERED)).any(), (name, turn)
+            assert not np.isin(classes, list(COVERED_SEGMENTS)).any(), (name, turn)
             is_mask = classes == Segment.FACE_WEAR
             assert is_mask.sum() > 800
             marks = labels_of_face(scene, camera, SIZE, images["depth"], is_mask)["landmarks"]

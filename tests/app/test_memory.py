@@ -27,7 +27,7 @@ def test_a_studio_forgets_the_persons_before(tmp_path):
     assert held_memory() - before < 15.0
 
 
-CAPTURES = """
+CAPTURES_PROGRAM = """
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.scenes import FaceScene
 from tests.memory import held_memory
@@ -48,7 +48,7 @@ def test_captures_that_are_opened_and_closed_take_no_memory():
     Memory varies by tens of megabytes, because drivers release pictures late. A separate process
     makes the captures, because pictures of other tests would also be released in it.
     """
-    command = [sys.executable, "-c", CAPTURES]
+    command = [sys.executable, "-c", CAPTURES_PROGRAM]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
     held = [float(line) for line in printed.split()]
     assert min(held[-12:]) - min(held[4:16]) < 15.0

@@ -24,8 +24,8 @@ from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 
 SIZE = (300, 300)
-JAWS = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
-TURNS = tuple(
+JAW_POSES = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
+HEAD_TURNS = tuple(
     dict(zip(("head_pitch", "head_yaw", "head_roll"), signs, strict=True))
     for signs in product((-1.0, 1.0), repeat=3)
 )
@@ -75,9 +75,9 @@ def test_nothing_of_the_mouth_pierces_the_throat(renderer):
     found = {}
     for number in (*range(28), 63, 189):
         sitter = Sitter(FaceScene(make_person(sample_identity(number))), renderer)
-        for k, jaw in enumerate(JAWS):
+        for k, jaw in enumerate(JAW_POSES):
             sitter.scene.reset()
-            for turn in (TURNS[(number + k) % 8], TURNS[(number + k + 3) % 8]):
+            for turn in (HEAD_TURNS[(number + k) % 8], HEAD_TURNS[(number + k + 3) % 8]):
                 # At the limits, and half way, as a person who looks around.
                 for share in (1.0, 0.5):
                     pose = {name: share * value for name, value in turn.items()}

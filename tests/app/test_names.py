@@ -23,9 +23,9 @@ from risorius.app.text import as_text, in_one_line
 from .command_line import refusal, risorius, succeeded
 from .recording_files import timecodes, written
 
-RAW = "l\udce4cheln"  # "lächeln" in Latin-1, as in an old archive
-SHOWN = r"l\xe4cheln"
-SMALL = ("--size", "64x64")
+RAW_NAME = "l\udce4cheln"  # "lächeln" in Latin-1, as in an old archive
+SHOWN_NAME = r"l\xe4cheln"
+SMALL_OPTIONS = ("--size", "64x64")
 needs_bytes = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="names are bytes on Linux alone"
 )
@@ -46,7 +46,11 @@ def pose(path, *more):
 
 def test_names_as_text():
     """Bytes that are not UTF-8 are escaped; all other characters stay."""
-    assert as_text(Path(f"/a/{RAW}.csv")) == f"/a/{SHOWN}.csv" == in_one_line(f"/a/{RAW}.csv")
+    assert (
+        as_text(Path(f"/a/{RAW_NAME}.csv"))
+        == f"/a/{SHOWN_NAME}.csv"
+        == in_one_line(f"/a/{RAW_NAME}.csv")
+    )
     assert as_text("schöner & größer \\ 笑") == "schöner & größer \\ 笑"
     as_text("\ud800 alone").encode()
 
@@ -57,14 +61,14 @@ def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
 
     A script can also be written under such a name, and read again.
     """
-    recording = take(tmp_path / f"{RAW}.csv")
-    script = tmp_path / f"{RAW}.toml"
+    recording = take(tmp_path / f"{RAW_NAME}.csv")
+    script = tmp_path / f"{RAW_NAME}.toml"
     output = succeeded("convert", recording, "-o", script)
-    assert f"{SHOWN}.toml: " in output
+    assert f"{SHOWN_NAME}.toml: " in output
     text = script.read_text("utf-8")
-    assert tomllib.loads(text)["title"] == SHOWN
-    assert text.startswith(f"# Made of {SHOWN}.csv")
-    assert load_script(script).title == SHOWN
+    assert tomllib.loads(text)["title"] == SHOWN_NAME
+    assert text.startswith(f"# Made of {SHOWN_NAME}.csv")
+    assert load_script(script).title == SHOWN_NAME
     succeeded("convert", recording, "-o", tmp_path / "plain.toml")
     assert (tmp_path / "plain.toml").read_text("utf-8") == text
 
@@ -75,12 +79,14 @@ def test_a_script_names_no_such_sound(tmp_path):
 
     One line names the file to rename.
     """
-    script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW}.wav")
+    script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW_NAME}.wav")
     with pytest.raises(UserError, match=r"l\\xe4cheln.wav: a script cannot name .* rename it"):
         save_script(tmp_path / "a.toml", script)
     assert list(tmp_path.iterdir()) == []
-    untitled = Script(RAW, 1.0, source="a", camera=RAW, poses=(Pose(0.0),), preface=f"# {RAW}")
-    assert tomllib.loads(script_text(untitled))["camera"] == SHOWN
+    untitled = Script(
+        RAW_NAME, 1.0, source="a", camera=RAW_NAME, poses=(Pose(0.0),), preface=f"# {RAW_NAME}"
+    )
+    assert tomllib.loads(script_text(untitled))["camera"] == SHOWN_NAME
 
 
 @needs_bytes
@@ -88,9 +94,9 @@ def test_a_script_names_no_such_sound(tmp_path):
 @pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
 def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
     """Motion is exported to files and folders, and from sources, with such names."""
-    script = pose(tmp_path / f"{RAW}.toml")
-    folder = tmp_path / (RAW if where == "folder" else "folder")
-    target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
+    script = pose(tmp_path / f"{RAW_NAME}.toml")
+    folder = tmp_path / (RAW_NAME if where == "folder" else "folder")
+    target = folder / f"{'plain' if where == 'folder' else RAW_NAME}{end}"
     succeeded("export", script, "-o", target, "--fps", "10", "--quiet")
     beside = {item.suffix for item in folder.iterdir()}
     assert target.stat().st_size > 1000
@@ -116,10 +122,14 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path):
     """
     OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
     script = pose(tmp_path / "pose.toml")
-    picture = tmp_path / RAW / f"{RAW}.png"
-    succeeded("capture", script, "-o", picture, "--passes", "depth,segmentation,landmarks", *SMALL)
+    picture = tmp_path / RAW_NAME / f"{RAW_NAME}.png"
+    succeeded(
+        "capture", script, "-o", picture, "--passes", "depth,segmentation,landmarks", *SMALL_OPTIONS
+    )
     ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
-    assert sorted(item.name for item in picture.parent.iterdir()) == [f"{RAW}{e}" for e in ends]
+    assert sorted(item.name for item in picture.parent.iterdir()) == [
+        f"{RAW_NAME}{e}" for e in ends
+    ]
     shutil.copy(picture.with_suffix(".exr"), tmp_path / "plain.exr")
     with OpenEXR.File(str(tmp_path / "plain.exr")) as file:
         assert file.channels()["depth.Z"].pixels.max() > 100.0
@@ -129,23 +139,25 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path):
 @needs_bytes
 def test_sets_and_lists_with_such_names(tmp_path):
     """Texts of sets and lists with such names are UTF-8: card, labels, table of results."""
-    backgrounds = tmp_path / f"{RAW}_pictures"
+    backgrounds = tmp_path / f"{RAW_NAME}_pictures"
     backgrounds.mkdir()
-    PIL.Image.new("RGB", (80, 64), (20, 90, 60)).save(backgrounds / f"{RAW}.png")
-    folder = tmp_path / f"{RAW}_set"
-    words = ("--background", backgrounds, *SMALL, "--refiner", "none", "--quiet")
+    PIL.Image.new("RGB", (80, 64), (20, 90, 60)).save(backgrounds / f"{RAW_NAME}.png")
+    folder = tmp_path / f"{RAW_NAME}_set"
+    words = ("--background", backgrounds, *SMALL_OPTIONS, "--refiner", "none", "--quiet")
     for count, more in ((1, ()), (2, ("--resume",))):
         succeeded("dataset", "--count", count, "-o", folder, *words, *more)
-    assert json.loads((folder / "000000.json").read_text("utf-8"))["background"] == f"{SHOWN}.png"
-    assert f"{SHOWN}_pictures" in (folder / "README.md").read_text("utf-8")
-    listing = tmp_path / f"{RAW}.txt"
+    assert (
+        json.loads((folder / "000000.json").read_text("utf-8"))["background"] == f"{SHOWN_NAME}.png"
+    )
+    assert f"{SHOWN_NAME}_pictures" in (folder / "README.md").read_text("utf-8")
+    listing = tmp_path / f"{RAW_NAME}.txt"
     script = pose(tmp_path / "pose.toml")
     target = tmp_path / "out.npz"
     listing.write_text(f"export '{script}' -o '{target}' --fps 5\n", "utf-8")
     succeeded("batch", listing, "--jobs", 1, "--quiet")
-    with (tmp_path / f"{RAW}_logs" / "summary.csv").open(encoding="utf-8", newline="") as file:
+    with (tmp_path / f"{RAW_NAME}_logs" / "summary.csv").open(encoding="utf-8", newline="") as file:
         (row,) = csv.DictReader(file)
-    assert f"{SHOWN}_logs" in row["log"]
+    assert f"{SHOWN_NAME}_logs" in row["log"]
 
 
 @needs_bytes
@@ -168,7 +180,7 @@ def test_sets_and_lists_with_such_names(tmp_path):
 def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
     """Missing files with such names, and meaningless words, are reported in one line."""
     monkeypatch.chdir(tmp_path)
-    line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
+    line = refusal(risorius(*(word.replace("NAME", RAW_NAME) for word in words)))
     assert "cheln" in line
     assert line.isprintable()
 
@@ -224,8 +236,8 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp
     script = pose(tmp_path / "pose.toml")
     recording = take(tmp_path / "take.csv")
     for words in (
-        ("capture", script, "-o", shared / "face.png", "--passes", "landmarks", *SMALL),
-        ("capture", script, "-o", shared / "face.mp4", "--fps", "5", *SMALL),
+        ("capture", script, "-o", shared / "face.png", "--passes", "landmarks", *SMALL_OPTIONS),
+        ("capture", script, "-o", shared / "face.mp4", "--fps", "5", *SMALL_OPTIONS),
         ("convert", recording, "-o", shared / "face.toml", "--overwrite"),
         ("export", script, "-o", shared / "face.npz"),
         ("export", script, "-o", shared / "face.csv"),
@@ -245,10 +257,10 @@ def test_frames_and_samples_follow_no_link(secret, tmp_path):
     frames = shared / "frames"
     frames.mkdir()
     (frames / "frame_00001.png").symlink_to(secret)
-    words = ("capture", script, "-o", frames, "--fps", "5", "--overwrite", *SMALL)
+    words = ("capture", script, "-o", frames, "--fps", "5", "--overwrite", *SMALL_OPTIONS)
     succeeded(*words)
     made = shared / "set"
-    words = ("dataset", "--count", "1", "-o", made, *SMALL, "--refiner", "none", "--quiet")
+    words = ("dataset", "--count", "1", "-o", made, *SMALL_OPTIONS, "--refiner", "none", "--quiet")
     succeeded(*words)
     for name in ("000000.png", "000000.json", "index.csv", "README.md"):
         (made / name).unlink()

@@ -6,7 +6,7 @@ import pytest
 from risorius.app.capture import outputs
 from risorius.app.errors import UserError
 
-GREY = np.full((64, 96, 3), 128, np.uint8)
+GREY_PICTURE = np.full((64, 96, 3), 128, np.uint8)
 
 
 def test_a_broken_film_leaves_the_old_one(tmp_path):
@@ -17,7 +17,7 @@ def test_a_broken_film_leaves_the_old_one(tmp_path):
         pytest.raises(RuntimeError, match="in the middle"),
         outputs.film(path, (96, 64), 25) as add,
     ):
-        add(GREY)
+        add(GREY_PICTURE)
         raise RuntimeError("in the middle")
     assert path.read_bytes() == b"mine"
     assert list(tmp_path.iterdir()) == [path]
@@ -30,8 +30,8 @@ def test_frames_in_a_folder(tmp_path):
     """
     target = tmp_path / "frames"
     with outputs.folder(target, overwrite=False) as add:
-        add(GREY)
-        add(GREY)
+        add(GREY_PICTURE)
+        add(GREY_PICTURE)
     assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "frame_00001.png"]
     (target / "notes.txt").write_text("mine")
     with (
@@ -40,7 +40,7 @@ def test_frames_in_a_folder(tmp_path):
     ):
         pass
     with outputs.folder(target, overwrite=True) as add:
-        add(GREY)
+        add(GREY_PICTURE)
     assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "notes.txt"]
     assert list(tmp_path.iterdir()) == [target]
 
@@ -50,13 +50,13 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
     for name in ("old", "new"):
         if name == "old":
             with outputs.folder(tmp_path / name, overwrite=False) as add:
-                add(GREY)
+                add(GREY_PICTURE)
         with (
             pytest.raises(RuntimeError, match="in the middle"),
             outputs.folder(tmp_path / name, overwrite=True) as add,
         ):
-            add(GREY)
-            add(GREY)
+            add(GREY_PICTURE)
+            add(GREY_PICTURE)
             raise RuntimeError("in the middle")
     left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
     assert left == ["old", "old/frame_00000.png"]
@@ -85,6 +85,6 @@ def test_a_film_that_ffmpeg_does_not_finish(tmp_path, monkeypatch, program, mess
     film.write_bytes(b"mine")
     with pytest.raises(UserError, match=message), outputs.film(film, (96, 64), 25.0) as add:
         for _ in range(20):
-            add(GREY)
+            add(GREY_PICTURE)
     assert film.read_bytes() == b"mine"
     assert list(film.parent.iterdir()) == [film]

@@ -12,9 +12,9 @@ from .command_line import risorius, succeeded
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-ALL = "depth,normal,triangle,splits,segmentation,landmarks"
-CAPTURE = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
-SMILE = """
+ALL_PASSES = "depth,normal,triangle,splits,segmentation,landmarks"
+CAPTURE_COMMAND = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
+SMILE_SCRIPT = """
 title = "Smile"
 [[pose]]
 time = 0.0
@@ -39,8 +39,8 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
     """Each frame has five files with the same picture, and their numbers agree."""
     script = tmp_path / "smile.toml"
     frames = tmp_path / "frames"
-    script.write_text(SMILE)
-    succeeded(*CAPTURE, script, "--passes", ALL, "-o", frames)
+    script.write_text(SMILE_SCRIPT)
+    succeeded(*CAPTURE_COMMAND, script, "--passes", ALL_PASSES, "-o", frames)
     ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
     assert names_in(frames) == [f"frame_0000{k}{end}" for k in range(3) for end in ends]
 
@@ -79,7 +79,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
 def test_only_requested_passes_are_written(tmp_path):
     """A picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
     target = tmp_path / "deep" / "joy.png"
-    succeeded(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
+    succeeded(*CAPTURE_COMMAND, "--set", "joy", "--passes", "segmentation", "-o", target)
     assert names_in(target.parent) == ["joy.json", "joy.png", "joy_seg.png"]
     assert "landmarks" not in json.loads((target.parent / "joy.json").read_text())
 
@@ -87,9 +87,15 @@ def test_only_requested_passes_are_written(tmp_path):
 @pytest.mark.slow
 def test_the_colours_are_those_without_passes(tmp_path):
     """Colours are the same to the last byte with passes and without; two runs are equal, too."""
-    for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
+    for name, passes in (
+        ("a", ("--passes", ALL_PASSES)),
+        ("b", ("--passes", ALL_PASSES)),
+        ("c", ()),
+    ):
         assert (
-            risorius(*CAPTURE, "--set", "joy", *passes, "-o", tmp_path / f"{name}.png").exit_code
+            risorius(
+                *CAPTURE_COMMAND, "--set", "joy", *passes, "-o", tmp_path / f"{name}.png"
+            ).exit_code
             == 0
         )
     for end in (".png", ".exr", "_seg.png", ".json"):
@@ -104,7 +110,7 @@ def test_no_input_is_written_over(tmp_path):
     """
     recording = tmp_path / "take.json"
     recording.write_text("[]")
-    result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")
+    result = risorius(*CAPTURE_COMMAND, recording, "--passes", "depth", "-o", tmp_path / "take.png")
     assert result.exit_code == 2
     assert "take.json: is both an input and an output" in result.output
     assert names_in(tmp_path) == ["take.json"]

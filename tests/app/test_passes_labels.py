@@ -13,8 +13,8 @@ from risorius.app.passes.camera import CameraLabels
 from risorius.app.passes.labels import gaze, labels_of
 from risorius.app.scenes import PlaneScene
 
-SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
-ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
+PICTURE_SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
+CAMERA_ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
 
 
 def camera_at(yaw, pitch):
@@ -26,7 +26,7 @@ def camera_at(yaw, pitch):
 
 
 @settings(max_examples=60, deadline=None)
-@given(size=SIZES, **ANGLES)
+@given(size=PICTURE_SIZES, **CAMERA_ANGLES)
 def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
     """K, R and t agree with the shaders' matrices; pixels count from the upper left corner."""
     camera, (width, height) = camera_at(yaw, pitch), size

@@ -18,7 +18,7 @@ from .driving import until
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-MODULE = '''
+PLUG_IN_MODULE = '''
 import numpy as np
 
 from risorius import refine
@@ -161,7 +161,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     site = tmp_path / "site"
     notes = site / "theirs-1.0.dist-info"
     notes.mkdir(parents=True)
-    (site / "theirs_for_a_test.py").write_text(MODULE, encoding="utf-8")
+    (site / "theirs_for_a_test.py").write_text(PLUG_IN_MODULE, encoding="utf-8")
     (site / "broken_for_a_test.py").write_text(BROKEN_MODULE, encoding="utf-8")
     (site / "leaves_for_a_test.py").write_text("raise SystemExit(5)", encoding="utf-8")
     (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
@@ -220,7 +220,7 @@ def test_they_are_offered():
     assert named["criteria"][-1] == "everywhere"
 
 
-BROKEN = {
+BROKEN_PLUG_INS = {
     "criterion=unborn": "criterion 'unborn' (broken_for_a_test:Unborn) raised ZeroDivisionError: ",
     "criterion=words": "missing 1 required positional argument: 'words'",
     "criterion=unbound": "criterion 'unbound' (broken_for_a_test:Unbound) raised KeyError: ",
@@ -242,7 +242,7 @@ def chosen(name: str) -> tuple[str, ...]:
     return ("--option", name) if "=" in name else ("--refiner", name)
 
 
-@pytest.mark.parametrize("name", BROKEN)
+@pytest.mark.parametrize("name", BROKEN_PLUG_INS)
 def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     """Any error of a plug-in is one line with its name, in pictures and in motion."""
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
@@ -250,7 +250,7 @@ def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     for words in (draw, move):
         if name == "empty" and words is move:  # an export does not ask for its memory
             continue
-        assert BROKEN[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
+        assert BROKEN_PLUG_INS[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
 
 
@@ -270,7 +270,7 @@ def test_the_traceback_is_printed_on_request(tmp_path, monkeypatch):
 def test_one_in_other_processes(tmp_path, monkeypatch):
     """Worker processes report the same line: for samples, frames of a film, lines of a list."""
     sample = ("dataset", "--count", "1", "-o", tmp_path / "set", "--size", "64x64", "--quiet")
-    assert BROKEN["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
+    assert BROKEN_PLUG_INS["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
     still = ("--set", "joy", "--size", "64x48", *chosen("criterion=moody"))
     listing = tmp_path / "list.txt"
     words = " ".join(map(str, ("capture", "-o", tmp_path / "face.png", *still)))
@@ -295,8 +295,10 @@ def test_a_window_reports_a_broken_plug_in(tmp_path):
     A plug-in that fails after the face moves does not end an open window.
     """
     view = ("view", "--size", "300x200")
-    assert BROKEN["criterion=unborn"] in refusal(risorius(*view, *chosen("criterion=unborn")))
-    assert BROKEN["lost"] in refusal(risorius(*view, *chosen("lost")))
+    assert BROKEN_PLUG_INS["criterion=unborn"] in refusal(
+        risorius(*view, *chosen("criterion=unborn"))
+    )
+    assert BROKEN_PLUG_INS["lost"] in refusal(risorius(*view, *chosen("lost")))
     script = script_for(None, "face")
     with Viewer(script, (300, 200)) as viewer:
         display = viewer.settings.display

@@ -14,7 +14,7 @@ from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
 
 SIZE = (160, 120)
-MOVED = {
+MOVED_VALUES = {
     "face": {"disgust": 1.0},
     "plane": {"amplitude": 1.0, "phase": 0.3},
 }
@@ -32,7 +32,7 @@ def scenes() -> dict[str, Scene]:
     """Every scene, with moved vertices."""
     built = {name: build() for name, build in SCENES.items()}
     for name, scene in built.items():
-        scene.pose(MOVED[name])
+        scene.pose(MOVED_VALUES[name])
         scene.step(0.5)
     return built
 

@@ -9,7 +9,7 @@ from pytest import approx
 from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.recordings.reading import is_recording, read_take
 
-from .recording_files import ANGLES, has_note, live_link, take_in, timecodes, written
+from .recording_files import ANGLE_COLUMNS, has_note, live_link, take_in, timecodes, written
 
 
 def test_a_raw_take(tmp_path):
@@ -42,7 +42,9 @@ def test_the_name_of_the_file_does_not_count(name, tmp_path):
     assert read_take(path).kind == "Live Link Face"
 
 
-@pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
+@pytest.mark.parametrize(
+    "left_out", [("TongueOut",), (), ("TongueOut", *ANGLE_COLUMNS), ANGLE_COLUMNS]
+)
 def test_fewer_columns(left_out, tmp_path):
     """Files of 60, 61, 51 and 52 columns are read; a missing column gives no channel."""
     columns = {name: values for name, values in live_link().items() if name not in left_out}

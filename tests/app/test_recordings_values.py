@@ -12,10 +12,16 @@ from risorius.sim.skull import turn_head
 
 from .recording_files import has_note, written
 
-COUNT = 150
-RISE = np.sin(np.linspace(0.0, np.pi, COUNT)) ** 2
-TIMES = np.arange(COUNT) / 30.0
-RESTING = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight", "mouthShrugUpper")
+FRAME_COUNT = 150
+RISE = np.sin(np.linspace(0.0, np.pi, FRAME_COUNT)) ** 2
+TIMES = np.arange(FRAME_COUNT) / 30.0
+RESTING_SHAPES = (
+    "browDownLeft",
+    "browDownRight",
+    "noseSneerLeft",
+    "noseSneerRight",
+    "mouthShrugUpper",
+)
 FRAMES = [
     {"time": time, "blendshapes": {"jawOpen": value, "mouthClose": 0.1}}
     for time, value in zip(TIMES.tolist(), RISE.tolist(), strict=True)
@@ -35,18 +41,21 @@ def of_json(folder, document):
     return read_take(path)
 
 
-UNITS = {
+VALUE_UNITS = {
     "shapes in percent": ({"jawOpen": 100 * RISE}, "jawOpen", 1.0, "0 to 100"),
     "shapes": ({"jawOpen": RISE}, "jawOpen", 1.0, ""),
     "units in percent": ({"AU12": 100 * RISE}, "AU12", 1.0, "0 to 100"),
     "units of FACS": ({"AU12": 4.0 * RISE}, "AU12", 0.8, "divided by 5"),
     "smoothed units": ({"AU12": 1.02 * RISE}, "AU12", 1.02, ""),
-    "OpenFace": ({"confidence": [0.9] * COUNT, "AU12_r": 4.0 * RISE}, "AU12", 0.8, ""),
+    "OpenFace": ({"confidence": [0.9] * FRAME_COUNT, "AU12_r": 4.0 * RISE}, "AU12", 0.8, ""),
     "OpenFace, 0 to 1": (
-        {"success": [1] * COUNT, "AU12_r": RISE, "AU12_c": [1] * COUNT}, "AU12", 1.0, "0 to 1",
+        {"success": [1] * FRAME_COUNT, "AU12_r": RISE, "AU12_c": [1] * FRAME_COUNT},
+        "AU12",
+        1.0,
+        "0 to 1",
     ),
     "OpenFace in percent": (
-        {"success": [1] * COUNT, "AU12_r": 100.0 * RISE}, "AU12", 1.0, "0 to 100",
+        {"success": [1] * FRAME_COUNT, "AU12_r": 100.0 * RISE}, "AU12", 1.0, "0 to 100",
     ),
     "visemes in percent": ({"viseme_aa": 100 * RISE}, "viseme_aa", 1.0, "0 to 100"),
     "LibreFace": (
@@ -61,10 +70,10 @@ UNITS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", UNITS)
+@pytest.mark.parametrize("kind", VALUE_UNITS)
 def test_units(kind, tmp_path):
     """Values in all units become fractions of 0 to 1, and a guessed unit is reported."""
-    columns, channel, peak, note = UNITS[kind]
+    columns, channel, peak, note = VALUE_UNITS[kind]
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
     assert take.channels[channel].max() == approx(peak, abs=2e-3)
@@ -83,8 +92,8 @@ def test_stray_values_are_no_percent(tmp_path):
 
 def lost_columns(value):
     """Columns of a face with brows and nose at 0.4 at rest, and `value` in rows 60 to 99."""
-    lost = (np.arange(COUNT) >= 60) & (np.arange(COUNT) < 100)
-    shapes = {name: np.where(lost, value, 0.4 + 0.02 * RISE) for name in RESTING}
+    lost = (np.arange(FRAME_COUNT) >= 60) & (np.arange(FRAME_COUNT) < 100)
+    shapes = {name: np.where(lost, value, 0.4 + 0.02 * RISE) for name in RESTING_SHAPES}
     return {"jawOpen": np.where(lost, value, 0.2 + 0.5 * RISE), **shapes}, lost
 
 
@@ -138,25 +147,25 @@ def test_a_frozen_face(flag, tmp_path):
 
 def test_zeros_of_a_calibrated_face_are_rest(tmp_path):
     """If a face is often at 0, zeros are its rest."""
-    shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
+    shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING_SHAPES}
     take = of_table(tmp_path, shapes)
     assert take.is_calibrated
     assert not has_note(take.notes, "No face")
 
 
 YAW = 20.0 * np.sin(TIMES + 0.1)
-TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up: + is to the left
+HEAD_TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up: + is to the left
 
 
 def heads():
     """For each layout: values of the frames, their key, and the sign of yaw."""
-    quaternions = TURNS.as_quat()
+    quaternions = HEAD_TURNS.as_quat()
     degrees = [{"yaw": yaw, "pitch": 1.0, "roll": 0.5} for yaw in YAW]
     radians = [{"Yaw": yaw, "Pitch": 0.01} for yaw in np.radians(YAW)]
     scalar_last = [list(each) for each in quaternions]
     scalar_first = [list(np.roll(each, 1)) for each in quaternions]
     named = [dict(zip("xyzw", each, strict=True)) for each in quaternions]
-    matrices = [turn.tolist() for turn in TURNS.as_matrix()]
+    matrices = [turn.tolist() for turn in HEAD_TURNS.as_matrix()]
     return {
         "degrees": (degrees, "headRotation", -1.0),
         "radians": (radians, "head_pose", -1.0),

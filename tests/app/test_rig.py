@@ -27,14 +27,14 @@ from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals
 
-from ..heads import TURN, user_head
+from ..heads import TURN_MATRIX, user_head
 from ..meshes import ball
 from .command_line import refusal, risorius, shape_keys_in_blender, succeeded
 from .glb_player import Player, document
-from .rig_files import LIBRARY, PICTURE, write_whole_head
+from .rig_files import LIBRARY_NAME, PICTURE_NAME, write_whole_head
 
-METRES = 0.001
-INVISIBLE = 0.02  # [mm], an invisible distance
+METRES_PER_MILLIMETRE = 0.001
+INVISIBLE_ERROR = 0.02  # [mm], an invisible distance
 
 
 @pytest.fixture(scope="module")
@@ -56,11 +56,16 @@ def test_shapes_are_where_the_simulation_rests(built_in, face):
     player = Player(built_in)
     shapes = player.shapes("skin")
     assert tuple(shapes) == ARKIT_SHAPES
-    assert np.abs(player.attribute("skin", "POSITION") - METRES * face.rest_positions).max() < 1e-6
+    assert (
+        np.abs(
+            player.attribute("skin", "POSITION") - METRES_PER_MILLIMETRE * face.rest_positions
+        ).max()
+        < 1e-6
+    )
     for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight", "cheekPuff"):
         moved = rest_in(face, {name: 1.0}).skin - face.rest_positions
         assert np.abs(moved).max() > 3.0
-        assert np.abs(shapes[name] / METRES - moved).max() < INVISIBLE, name
+        assert np.abs(shapes[name] / METRES_PER_MILLIMETRE - moved).max() < INVISIBLE_ERROR, name
 
 
 def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
@@ -68,7 +73,9 @@ def test_an_avatar_of_ours_needs_no_landmarks(built_in, face):
     mesh = read_mesh(built_in)
     known = recognised(mesh)
     assert known.name == "the built-in head"
-    places = np.abs(mesh.vertices[known.landmarks] - METRES * face.rest_positions[face.landmarks])
+    places = np.abs(
+        mesh.vertices[known.landmarks] - METRES_PER_MILLIMETRE * face.rest_positions[face.landmarks]
+    )
     assert places.max() < 1e-6
 
 
@@ -90,9 +97,9 @@ def test_shares_of_bones_stay_within_their_limits(face):
 def test_mouth_close_shuts_an_open_jaw(built_in, face):
     """mouthClose is added to jawOpen, as ARKit defines it."""
     shapes = Player(built_in).shapes("skin")
-    shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES + face.rest_positions
+    shut = (shapes["jawOpen"] + shapes["mouthClose"]) / METRES_PER_MILLIMETRE + face.rest_positions
     upper, lower = face.landmarks[[62, 66]]
-    opened = shapes["jawOpen"] / METRES + face.rest_positions
+    opened = shapes["jawOpen"] / METRES_PER_MILLIMETRE + face.rest_positions
     assert opened[upper, 1] - opened[lower, 1] > 15.0
     assert abs(shut[upper, 1] - shut[lower, 1]) < 3.0
 
@@ -176,7 +183,7 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
     assert [each["name"] for each in found["materials"]].count("skin") == 1
     view = found["bufferViews"][found["images"][0]["bufferView"]]
     content = Player(whole.avatar).blob[view["byteOffset"] :][: view["byteLength"]]
-    assert content == (whole.mesh.parent / PICTURE).read_bytes()
+    assert content == (whole.mesh.parent / PICTURE_NAME).read_bytes()
 
 
 def test_each_piece_of_a_file_moves_by_its_role(whole, face):
@@ -256,9 +263,9 @@ def test_correctives_make_sums_come_true(tmp_path, face):
         pair = rule["product"]
         assert rule["name"] == "_".join(pair)
         together = rest_in(face, dict.fromkeys(pair, 1.0)).skin - face.rest_positions
-        summed = sum(shapes[name] for name in (*pair, rule["name"])) / METRES
-        assert np.abs(summed - together).max() < 5 * INVISIBLE
-        plain = sum(shapes[name] for name in pair) / METRES
+        summed = sum(shapes[name] for name in (*pair, rule["name"])) / METRES_PER_MILLIMETRE
+        assert np.abs(summed - together).max() < 5 * INVISIBLE_ERROR
+        plain = sum(shapes[name] for name in pair) / METRES_PER_MILLIMETRE
         assert np.abs(plain - together).max() > 3.0
 
 
@@ -270,7 +277,7 @@ def test_printed_errors_include_the_correctives(face):
     (plain,) = table(face, poses)
     (corrected,) = table(face, {**poses, **corrective_poses(face, [pair])}, [pair])
     assert plain.most > 3.0
-    assert corrected.most < INVISIBLE
+    assert corrected.most < INVISIBLE_ERROR
 
 
 @pytest.mark.slow
@@ -321,7 +328,7 @@ def test_a_finer_head_follows_a_coarser_one(tmp_path, monkeypatch):
     shapes = player.shapes("head")
     assert tuple(shapes) == ARKIT_SHAPES
     upper, lower = fine.landmarks[[62, 66]]
-    down = shapes["jawOpen"] @ TURN.T
+    down = shapes["jawOpen"] @ TURN_MATRIX.T
     assert (down[lower, 1] < -0.02) and (abs(down[upper, 1]) < 0.006)
     assert norm(shapes["eyeBlinkLeft"], axis=1).max() > 0.005
 
@@ -343,7 +350,7 @@ def copied(scene, tmp_path_factory):
     text += b" " * (-len(text) % 4)
     body = struct.pack("<I4s", len(text), b"JSON") + text + data[20 + length :]
     own.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body)
-    points = METRES * scene.rest_positions[scene.landmarks]
+    points = METRES_PER_MILLIMETRE * scene.rest_positions[scene.landmarks]
     landmarks = folder / "own.json"
     landmarks.write_text(json.dumps({"landmarks": points.tolist()}))
     path = folder / "rigged.glb"
@@ -387,7 +394,7 @@ def test_shapes_of_a_glb_are_those_of_the_simulation(copied, face):
     assert tuple(shapes)[-52:] == tuple(f"{name}.risorius" for name in ARKIT_SHAPES)
     moved = rest_in(face, {"jawOpen": 1.0}).skin - face.rest_positions
     opened = shapes["jawOpen.risorius"]
-    assert np.median(np.abs(opened / METRES - moved)) < 0.5
+    assert np.median(np.abs(opened / METRES_PER_MILLIMETRE - moved)) < 0.5
     assert opened[:, 1].min() < -0.02
     # Lower teeth are children of a mandible node, which stands still.
     assert player.shapes("teeth_lower")["jawOpen"][:, 1].max() < -0.005
@@ -411,7 +418,7 @@ def test_a_folder_of_objs_keeps_the_lines_of_the_file(whole, tmp_path):
     assert {path.stem for path in folder.glob("*.obj")} == {"neutral", *ARKIT_SHAPES}
     assert f"52 shapes, {len(ARKIT_SHAPES) + 1} meshes" in output
     others = {path.name for path in folder.iterdir() if path.suffix != ".obj"}
-    assert others == {LIBRARY, PICTURE}
+    assert others == {LIBRARY_NAME, PICTURE_NAME}
     for name in others:
         assert (folder / name).read_bytes() == (whole.mesh.parent / name).read_bytes()
     lines = whole.mesh.read_text().splitlines()

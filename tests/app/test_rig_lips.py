@@ -13,12 +13,12 @@ from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
 
 from ..assets.gltf_files import GltfMaker
-from ..heads import METRES, UserHead, closed, masked, nearly_shut, sealed
+from ..heads import METRES_PER_MILLIMETRE, UserHead, closed, masked, nearly_shut, sealed
 from .command_line import succeeded
 from .glb_player import Player
 
-UPPER = 62  # landmarks in the middle of the lips
-LOWER = 66
+UPPER_LIP_LANDMARK = 62  # landmarks in the middle of the lips
+LOWER_LIP_LANDMARK = 66
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_an_avatar_keeps_triangles_across_mouth_and_eyes(tmp_path):
     assert np.abs(places - mask.mesh.vertices).max() < 1e-4
     assert np.array_equal(read_mesh(path).faces, mask.mesh.faces)
     opened = player.shapes("head")["jawOpen"][mask.landmarks, 1]
-    assert opened[LOWER] < opened[UPPER] - 15.0
+    assert opened[LOWER_LIP_LANDMARK] < opened[UPPER_LIP_LANDMARK] - 15.0
 
 
 @pytest.mark.slow
@@ -82,7 +82,7 @@ def write_glb(shut, folder):
     maker = GltfMaker()
     uv_accessor = maker.accessor(uv)
     attributes = {"TEXCOORD_0": uv_accessor, "_MASK": maker.accessor(np.linspace(0, 1, len(uv)))}
-    primitive = maker.primitive(METRES * doubled, corners, attributes=attributes)
+    primitive = maker.primitive(METRES_PER_MILLIMETRE * doubled, corners, attributes=attributes)
     maker.shown({"name": "head", "mesh": maker.mesh(primitive)})
     marks = folder / "marks.json"
     marks.write_text(json.dumps({"landmarks": shut.landmarks.tolist()}))
@@ -99,7 +99,7 @@ def test_sealed_lips_are_cut_and_part(shut, tmp_path):
     added = len(head.vertices) - len(shut.mesh.vertices)
     assert 8 < added < 30
     assert note == f"its lips were sealed: they are cut apart, {added} vertices are doubled"
-    upper, lower = head.landmarks[[UPPER, LOWER]]
+    upper, lower = head.landmarks[[UPPER_LIP_LANDMARK, LOWER_LIP_LANDMARK]]
     assert upper != lower
     assert np.array_equal(head.vertices[upper], head.vertices[lower])
     simulation = sim.create(head)
@@ -117,7 +117,7 @@ def test_a_cut_runs_along_edges_of_the_mesh(shut):
     No other vertex is doubled.
     """
     mesh = shut.mesh
-    tiny = replace(mesh, vertices=METRES * mesh.vertices)
+    tiny = replace(mesh, vertices=METRES_PER_MILLIMETRE * mesh.vertices)
     cut = lip_cut(tiny, shut.landmarks, tiny.vertices[shut.landmarks])
     opened = cut.applied(tiny)
     assert len(opened.faces) == len(mesh.faces)
@@ -154,14 +154,14 @@ def test_a_cut_takes_the_vertices_of_the_mesh_that_is_cut(shut, tmp_path):
     """
     path, marks, doubled, _ = write_glb(shut, tmp_path)
     numbers = shut.landmarks.copy()
-    other = np.flatnonzero((doubled == doubled[numbers[UPPER]]).all(axis=1))[-1]
-    assert other != numbers[UPPER]
+    other = np.flatnonzero((doubled == doubled[numbers[UPPER_LIP_LANDMARK]]).all(axis=1))[-1]
+    assert other != numbers[UPPER_LIP_LANDMARK]
     thin_lip = 51  # outer border of an upper lip without height
     numbers[thin_lip] = other
     marks.write_text(json.dumps({"landmarks": numbers.tolist()}))
     head = fit_head(path, marks)
     assert head.lip_cut is not None
-    assert head.landmarks[thin_lip] == head.landmarks[UPPER]
+    assert head.landmarks[thin_lip] == head.landmarks[UPPER_LIP_LANDMARK]
 
 
 @pytest.mark.slow
@@ -170,7 +170,7 @@ def test_an_avatar_has_the_files_vertices_and_few_more(shut, tmp_path, kind):
     """The file's vertices come first with their attributes, and jawOpen parts the doubled ones."""
     if kind == "glb":
         mesh, marks, own, uv = write_glb(shut, tmp_path)
-        unit = METRES
+        unit = METRES_PER_MILLIMETRE
     else:
         mesh, marks = shut.write(tmp_path)
         own = shut.mesh.vertices

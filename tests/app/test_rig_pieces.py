@@ -117,7 +117,7 @@ def incisor(maker: Maker) -> tuple[Points, Faces]:
     return np.asarray(tooth.vertices) + place, np.asarray(tooth.faces)
 
 
-CASES = {
+PIECE_CASES = {
     "ball": (lambda maker: maker.ball("left", 1.0, 0.0), "eye_left"),
     "large ball": (lambda maker: maker.ball("left", 1.5, -0.4), "eye_left"),
     "cornea": (lambda maker: maker.ball("right", 0.62, 0.45), "eye_right"),
@@ -145,10 +145,10 @@ def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> 
     return find_pieces(places, corners, np.arange(count), scene.face.head, names)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", PIECE_CASES)
 def test_each_piece_gets_its_role(face, case):
     """Roles are found for eyes in layers, teeth with roots, a deep tongue, a beard and glasses."""
-    make, role = CASES[case]
+    make, role = PIECE_CASES[case]
     assert {piece.role for piece in pieces_with(face, make(Maker(face)))} == {role}
 
 

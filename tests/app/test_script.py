@@ -13,7 +13,7 @@ from risorius.app.script.easings import EASINGS, easing_named, easing_names
 from risorius.app.script.script_file import load_script, parse_script, script_text
 from tests.app.command_line import refusal, risorius
 
-HELLO = """
+HELLO_SCRIPT = """
 title = "Hello"
 [[pose]]
 time = 1.0
@@ -34,7 +34,7 @@ joy = [ { time = 0.0, value = 0.25 } ]
 
 def test_poses_and_tracks_add_up():
     """Poses interpolate, tracks are added, and a control that no pose names is zero."""
-    script = parse_script(HELLO, source="hello.toml")
+    script = parse_script(HELLO_SCRIPT, source="hello.toml")
     assert script.at(1.5) == approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
     assert script.at(2.0) == approx({"joy": 1.25, "jaw_open": 0.5, "blink": 1.0})
     assert script.at(99.0) == approx({"joy": 0.25, "jaw_open": 0.0, "blink": 1.0})
@@ -193,7 +193,7 @@ def test_each_mistake_in_a_script_is_named(text, message):
 
 def test_unknown_names_get_a_suggestion():
     """An unknown name is reported with the nearest known ones."""
-    script = parse_script(HELLO, source="hello.toml")
+    script = parse_script(HELLO_SCRIPT, source="hello.toml")
     with pytest.raises(UserError, match=r"hello.toml: unknown name 'joy'; did you mean joyful"):
         script.check(dict.fromkeys(("joyful", "jaw_open", "blink"), (0.0, 1.0)))
 

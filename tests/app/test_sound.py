@@ -27,9 +27,9 @@ from risorius.app.viewer.session.soundtrack import Soundtrack
 from .command_line import risorius
 from .sounds import noise, write_wav
 
-POSE = "[[pose]]\ntime = 1.0\n"
-GREY = np.full((48, 64, 3), 128, np.uint8)
-FRAME = 1.0 / 30.0  # [s]
+POSE_SCRIPT = "[[pose]]\ntime = 1.0\n"
+GREY_PICTURE = np.full((48, 64, 3), 128, np.uint8)
+FRAME_TIME = 1.0 / 30.0  # [s]
 
 
 def lag(heard, source):
@@ -77,7 +77,7 @@ def test_an_unreadable_sound_is_reported_in_one_line(tmp_path):
     write_wav(tmp_path / "mute.wav", np.zeros(0))
     (tmp_path / "list.m3u8").write_text(f"#EXTM3U\n#EXTINF:1,\n{tmp_path}/text.wav\n")
     with outputs.film(tmp_path / "mute.mp4", (64, 48), 25.0) as add:
-        add(GREY)
+        add(GREY_PICTURE)
     for name in ("text.wav", "empty.wav", "mute.wav", "list.m3u8", "mute.mp4"):
         with pytest.raises(UserError, match=f"{name}: holds no sound") as raised:
             load_sound(tmp_path / name)
@@ -98,12 +98,14 @@ def test_an_unreadable_sound_is_reported_in_one_line(tmp_path):
 def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
     """A script's sound is found from any working directory, by relative or absolute path."""
     for name in ("speech.wav", "sounds/speech.wav", "../speech.wav", str(tmp_path / "speech.wav")):
-        script = parse_script(f"sound = '{name}'\n{POSE}", source=str(tmp_path / "deep" / "s.toml"))
+        script = parse_script(
+            f"sound = '{name}'\n{POSE_SCRIPT}", source=str(tmp_path / "deep" / "s.toml")
+        )
         assert script.sound == Path(os.path.normpath(tmp_path / "deep" / name))
-    assert parse_script(POSE, source="s").sound is None
+    assert parse_script(POSE_SCRIPT, source="s").sound is None
     for wrong, why in (("7", "must be a text"), ("''", "is empty")):
         with pytest.raises(UserError, match=f"'sound'.*{why}"):
-            parse_script(f"sound = {wrong}\n{POSE}", source="s")
+            parse_script(f"sound = {wrong}\n{POSE_SCRIPT}", source="s")
 
 
 def test_a_project_stays_together(tmp_path):
@@ -111,7 +113,7 @@ def test_a_project_stays_together(tmp_path):
     home = tmp_path / "home"
     (home / "sounds").mkdir(parents=True)
     sound = home / "sounds" / "a.wav"
-    script = parse_script(f"sound = '{sound}'\n{POSE}", source="s")
+    script = parse_script(f"sound = '{sound}'\n{POSE_SCRIPT}", source="s")
     save_script(home / "s.toml", script)
     assert 'sound = "sounds/a.wav"' in (home / "s.toml").read_text()
     save_script(home / "other" / "s.toml", script)
@@ -137,7 +139,7 @@ def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
     film = tmp_path / f"film{suffix}"
     with outputs.film(film, (64, 48), 30.0, Heard(source, 1.0)) as add:
         for _ in range(31):
-            add(GREY)
+            add(GREY_PICTURE)
     heard = load_sound(film)
     assert abs(lag(heard, load_sound(source))) < 5e-3
     assert heard.duration == approx(min(seconds, 1.0), abs=0.05)
@@ -281,5 +283,5 @@ def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeyp
         session.time += clock.steps(soundtrack.elapsed(1.0 / frames_per_second)) * STEP_TIME
         assert played[0].position == approx(now * pace, abs=2e-3)
         off.append(now * pace - session.time)
-    assert np.abs(off).max() < FRAME
-    assert abs(np.median(off)) < 0.5 * FRAME
+    assert np.abs(off).max() < FRAME_TIME
+    assert abs(np.median(off)) < 0.5 * FRAME_TIME

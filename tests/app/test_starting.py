@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-PROGRAM = """
+MODULES_PROGRAM = """
 import contextlib, sys
 from risorius.__main__ import command
 with contextlib.suppress(SystemExit):
@@ -16,7 +16,7 @@ print("loaded:", *sys.modules)
 def loaded_by(*words, cache):
     """Packages that a command imports, the project's as two words; `cache`: compiled code."""
     result = subprocess.run(
-        [sys.executable, "-c", PROGRAM, *words],
+        [sys.executable, "-c", MODULES_PROGRAM, *words],
         env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
         capture_output=True,
         text=True,

@@ -9,7 +9,7 @@ import pytest
 
 from .command_line import started
 
-SLOW = ("capture", "--scene", "face", "--size", "320x240")
+SLOW_COMMAND = ("capture", "--scene", "face", "--size", "320x240")
 
 
 def is_there(folder, pattern):
@@ -36,7 +36,7 @@ def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
 
     Outputs are a film and frames.
     """
-    words = ("-m", "risorius", *SLOW, "-o", tmp_path / output, "--quiet")
+    words = ("-m", "risorius", *SLOW_COMMAND, "-o", tmp_path / output, "--quiet")
     process = started(*words, start_new_session=True)
     while process.poll() is None and not is_there(tmp_path, pattern):
         time.sleep(0.01)

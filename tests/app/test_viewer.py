@@ -182,7 +182,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer):
 def test_a_hovered_expression_lights_its_muscles(viewer):
     """Pointing at joy highlights muscles of both sides, at a kiss only those of the lips."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
-    pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
+    pulled = [f"{SMILE_MUSCLE}_{side}" for side in ("left", "right")]
     assert until(viewer, lambda: pulled[0] in viewer.face.view.pointed)
     assert viewer.face.view.pointed[pulled[0]] == viewer.face.view.pointed[pulled[1]] > 0.8
     xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
@@ -302,7 +302,7 @@ def test_the_window_remembers(tmp_path):
     assert replayed().display == settings.display
 
 
-MAJOR = "zygomaticus_major"
+SMILE_MUSCLE = "zygomaticus_major"
 
 
 def landmark(viewer, number):
@@ -326,7 +326,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     solved = dict(session.values)
     xdotool(viewer, "mouseup", 1)
     assert session.values == solved
-    assert solved[f"{MAJOR}_left"] > 0.3
+    assert solved[f"{SMILE_MUSCLE}_left"] > 0.3
     assert len([name for name, value in solved.items() if value]) <= 4
     assert not any(value for name, value in solved.items() if name.endswith("_right"))
     assert viewer.messages.text.startswith("Smile muscle, left ")
@@ -360,7 +360,7 @@ def pulled_corner(viewer, by, steps):
 def test_a_corner_drawn_up_and_out_smiles_at_any_speed(viewer):
     """Slow or at once, near or far, the same muscle smiles; its name is shown during the drag."""
     found = [pulled_corner(viewer, 60, steps) for steps in (6, 1, 1)]
-    assert found[0].keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
+    assert found[0].keys() == {f"{SMILE_MUSCLE}_left", f"{SMILE_MUSCLE}_right"}
     assert min(found[0].values()) > 0.9
     for other in found[1:]:
         assert other == approx(found[0], abs=0.05)
@@ -386,7 +386,7 @@ def test_a_pull_is_the_same_beside_busy_processes(viewer):
     for other in found:
         assert other == approx(quiet, abs=0.05)
     for smile in smiles:
-        assert smile.keys() == {f"{MAJOR}_left", f"{MAJOR}_right"}
+        assert smile.keys() == {f"{SMILE_MUSCLE}_left", f"{SMILE_MUSCLE}_right"}
         assert smile == approx(far, abs=0.05)
 
 

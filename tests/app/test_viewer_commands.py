@@ -30,10 +30,10 @@ from risorius.app.viewer.settings import Display, Settings
 from risorius.app.viewer.timeline.keys import KeySelection
 
 from .driving import wait_for
-from .light_files import HEAD, pixels, rgbe, write_map
+from .light_files import HEADER, pixels, rgbe, write_map
 from .sounds import noise, write_wav
 
-POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
+POSE_SCRIPT = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 
 
@@ -86,7 +86,7 @@ def test_an_unreadable_file_is_reported(desk, tmp_path):
     """An unreadable file gives one line, and the current script stays."""
     before = desk.session.script
     bad = tmp_path / "bad.toml"
-    bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
+    bad.write_text(POSE_SCRIPT.replace("jaw_open", "no_such_muscle"))
     line = desk.drop(bad)
     assert desk.messages.is_error
     assert "no_such_muscle" in line and "\n" not in line
@@ -94,7 +94,7 @@ def test_an_unreadable_file_is_reported(desk, tmp_path):
     assert "is not text in UTF-8" in desk.drop(bad)
     assert "one of them is enough" in desk.drop(bad, tmp_path)
     assert desk.session.script is before
-    bad.write_text(POSE)
+    bad.write_text(POSE_SCRIPT)
     desk.drop(bad)
     assert desk.session.values["jaw_open"] == 0.5
 
@@ -110,7 +110,7 @@ def test_a_dropped_map_lights_the_scene(desk, tmp_path):
     assert style_of(display, None).light == read_light_map(sky).light()
     before = scene_light(display.light)
     mirrored = rgbe(pixels())[:, ::-1]
-    sky.write_bytes(HEAD + mirrored.tobytes())
+    sky.write_bytes(HEADER + mirrored.tobytes())
     script = tmp_path / "script.toml"
     script.write_text(SCRIPT)
     desk.drop(sky, script)
@@ -124,7 +124,7 @@ def test_a_dropped_map_lights_the_scene(desk, tmp_path):
     [
         (None, "no such file"),
         (b"#?RADIANCE\n\n-Y 32 +X 32\n", "is twice as wide as high"),
-        (HEAD + b"zz", "cannot be read as a light map: it is shorter than its size requires"),
+        (HEADER + b"zz", "cannot be read as a light map: it is shorter than its size requires"),
     ],
 )
 def test_a_broken_map_is_one_line(desk, tmp_path, content, line):

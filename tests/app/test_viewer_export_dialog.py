@@ -38,15 +38,15 @@ from .light_files import write_map
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 SCRIPT = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\nname = 'j'\njoy = 1.0\n"
-SMALL = (160, 120)
-LONG = 120.0  # [s] limit for an export, which starts a process
+SMALL_SIZE = (160, 120)
+EXPORT_LIMIT = 120.0  # [s] limit for an export, which starts a process
 
 
 @pytest.fixture(autouse=True)
 def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
     """Start with a script of half a second, few small pictures, in the test's folder."""
     open_script(viewer, SCRIPT)
-    viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0)
+    viewer.settings.export = ExportChoices("frames", size=SMALL_SIZE, rate=12.0)
     yield
     viewer.exporter.close()
     viewer.exporter.is_asking = False
@@ -64,7 +64,7 @@ def finish(viewer, *key):
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
 
 
 def begin(viewer, name=""):
@@ -101,7 +101,9 @@ def test_a_film_is_that_of_capture(viewer, tmp_path):
     assert viewer.messages.stays
     sky = read_light_map(tmp_path / "sky.hdr")
     style = Style(light=sky.light(), background=sky.background())
-    options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
+    options = CaptureOptions(
+        SMALL_SIZE, 12.0, Refinement("paper"), camera="three-quarter", style=style
+    )
     film_of(viewer.session.script, options, output=tmp_path / "captured", progress=False)
     ours = pictures(tmp_path / "smile")
     captured = pictures(tmp_path / "captured")
@@ -124,7 +126,7 @@ def test_pictures_are_written_into_a_folder_again(viewer, tmp_path):
     assert viewer.exporter.job is None
     press_keys(viewer, "Return")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
     assert not viewer.messages.is_error
     assert (folder / "notes.txt").read_text() == "precious"
     assert pictures(folder).shape == (7, 120, 160, 3)
@@ -138,7 +140,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
     click(viewer, "Write: Motion: numpy arrays (.npz)")
     begin(viewer, "moved")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
     assert "moved.npz" in viewer.messages.text
     assert not viewer.messages.is_error
     with np.load(tmp_path / "moved.npz") as arrays:
@@ -148,13 +150,13 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
 @pytest.mark.slow
 def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
     """The face responds during an export; cancel leaves neither a file nor a part of one."""
-    monkeypatch.setattr(workers, "GRACE_TIME", LONG)
+    monkeypatch.setattr(workers, "GRACE_TIME", EXPORT_LIMIT)
     viewer.settings.export.kind = "mp4"
     open_script(viewer, SCRIPT.replace("0.5", "600.0"))
     press_keys(viewer, "F10")
     begin(viewer)
     job = viewer.exporter.job
-    assert until(viewer, lambda: job.task.share > 0.0, LONG)
+    assert until(viewer, lambda: job.task.share > 0.0, EXPORT_LIMIT)
     press_keys(viewer, "1")
     assert viewer.session.is_solo("joy")
     press_keys(viewer, "ctrl+q")
@@ -229,8 +231,8 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     viewer.show_scene(before)
     job = viewer.exporter.job
     assert job.target.name == f"{mesh.stem}-avatar.glb"
-    assert until(viewer, lambda: 0.2 < job.task.share < 1.0, LONG)
-    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert until(viewer, lambda: 0.2 < job.task.share < 1.0, EXPORT_LIMIT)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
     assert not viewer.messages.is_error, viewer.messages.text
     found = document(job.target)
     head = next(each for each in found["meshes"] if each["name"] == "head")

@@ -39,7 +39,7 @@ from .sounds import noise, write_wav
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
-POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
+POSE_SCRIPT = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
 
 def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
@@ -47,7 +47,7 @@ def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
     script = tmp_path / "smile.toml"
     pose = tmp_path / "schöner & 50% größer.toml"
     script.write_text(SCRIPT)
-    pose.write_text(POSE)
+    pose.write_text(POSE_SCRIPT)
     drop(viewer, script)
     assert viewer.session.script.duration == 2.0
     assert "smile.toml" in viewer.messages.text

@@ -29,7 +29,7 @@ from risorius.app.viewer.window.splash_screen import SplashScreen
 
 from .driving import NEEDS_A_SCREEN, SIZE, run, settle, wait_for
 
-GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
+KEPT_VALUES = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
 
 
 @pytest.fixture
@@ -69,7 +69,7 @@ def test_settings_come_back(tmp_path):
 )
 def test_one_wrong_value_gets_its_default(path, where, value):
     """A wrong value is reported by name and gets its default; all others stay."""
-    stored = json.loads(json.dumps(GOOD))
+    stored = json.loads(json.dumps(KEPT_VALUES))
     *tables, name = where.split(".")
     table = stored
     for each in tables:
@@ -79,7 +79,7 @@ def test_one_wrong_value_gets_its_default(path, where, value):
     settings, complaint = load_settings(path)
     display = Display(wireframe=True)
     expected = Settings(theme="dark", zoom=1.5, folds={"Jaw": True}, display=display)
-    if len(tables) == 0 and name in GOOD:
+    if len(tables) == 0 and name in KEPT_VALUES:
         setattr(expected, name, getattr(Settings(), name))
     if tables[2:]:
         expected.display.options = {"kahler": {}}

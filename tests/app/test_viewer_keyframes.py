@@ -18,15 +18,15 @@ from risorius.app.viewer.documents.scripts import Question, ScriptCommands
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
-from .driving import HELLO
+from .driving import HELLO_FILE
 
-JOY = KeyId(POSE_TRACK, 1.0)
+JOY_KEY = KeyId(POSE_TRACK, 1.0)
 
 
 @pytest.fixture
 def hello() -> Script:
     """Four poses, one with a name, and a blink."""
-    return load_script(HELLO)
+    return load_script(HELLO_FILE)
 
 
 def test_a_key_shows_just_the_face_that_was_set(hello, scene):
@@ -136,7 +136,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     """If a key moves away from the playhead, the face follows; a pose set by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
-    session.edit(keyframes.moved(session.script, KeySet.from_keys(JOY), 0.5)[0])
+    session.edit(keyframes.moved(session.script, KeySet.from_keys(JOY_KEY), 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
     session.edit(keyframes.moved(session.script, KeySet.from_keys(KeyId(POSE_TRACK, 1.5)), -0.5)[0])
@@ -213,7 +213,7 @@ def test_losses_of_a_file_are_noticed(session):
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))
 def test_raised_keys_stay_within_limits(amount, choice):
     """Chosen keys are raised by the amount within limits; other keys and all times stay."""
-    hello = load_script(HELLO)
+    hello = load_script(HELLO_FILE)
     limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))
     everything = sorted(keyframes.all_keys(hello))
     places = KeySet.from_keys(

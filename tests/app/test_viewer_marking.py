@@ -25,7 +25,7 @@ from risorius.app.viewer.marking.picture import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
-from tests.heads import METRES, user_head, with_card, write_topology
+from tests.heads import METRES_PER_MILLIMETRE, user_head, with_card, write_topology
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -39,7 +39,7 @@ from .driving import (
     xdotool,
 )
 
-GUESS_ERROR = 6.0 * METRES  # [m], error of guesses on the built-in head's shape
+GUESS_ERROR = 6.0 * METRES_PER_MILLIMETRE  # [m], error of guesses on the built-in head's shape
 
 
 @pytest.fixture
@@ -269,7 +269,7 @@ class TestInTheWindow:
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.mark_first(viewer)
-        assert np.median(off(marking)) < 2.0 * METRES
+        assert np.median(off(marking)) < 2.0 * METRES_PER_MILLIMETRE
         assert off(marking).max() < 2.0 * GUESS_ERROR
         before = marking.marks
         number = 37
@@ -280,7 +280,7 @@ class TestInTheWindow:
         xdotool(viewer, "mousemove_relative", "--", 2, -8)
         xdotool(viewer, "mouseup", 1)
         moved = np.subtract(marking.marks.places[number], before.places[number])
-        assert norm(moved) > 2.0 * METRES
+        assert norm(moved) > 2.0 * METRES_PER_MILLIMETRE
         assert marking.current == number
         assert [n for n in MARKING_ORDER if marking.marks.places[n] != before.places[n]] == [number]
         press_keys(viewer, "ctrl+z")

@@ -39,7 +39,7 @@ from risorius import render  # isort: skip - after the viewer, see app/viewer/gu
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
-SMILE = "zygomaticus_major"
+SMILE_MUSCLE = "zygomaticus_major"
 
 
 def in_panel(viewer, *rows):

@@ -18,7 +18,7 @@ from risorius.app.viewer.session.physics import STEP_TIME
 
 from .driving import run
 
-MAJOR = "zygomaticus_major_left"
+SMILE_MUSCLE = "zygomaticus_major_left"
 
 
 def test_recording_begins_at_the_playhead_and_keeps_the_rest(session):
@@ -175,7 +175,7 @@ def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
     for step in range(60):
         session.set("jaw_open", step / 60.0)
         session.advance(STEP_TIME)
-    session.set(MAJOR, 0.8)
+    session.set(SMILE_MUSCLE, 0.8)
     run(session, 60)
     wanted = session.scene.positions.copy()
     assert np.abs(wanted - session.scene.rest_positions).max() > 10.0

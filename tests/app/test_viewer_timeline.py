@@ -34,8 +34,8 @@ from .driving import (
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
 
-JOY = KeyId(POSE_TRACK, 1.0)
-REST = KeyId(POSE_TRACK, 3.0)
+JOY_KEY = KeyId(POSE_TRACK, 1.0)
+REST_KEY = KeyId(POSE_TRACK, 3.0)
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
@@ -46,7 +46,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     session = viewer.session
     before = session.script
     session.seek(1.0)
-    drag(viewer, key_at(viewer, JOY), (40, 0))
+    drag(viewer, key_at(viewer, JOY_KEY), (40, 0))
     xdotool(viewer, "mousemove_relative", "--", 13, 0)
     assert session.values["joy"] < 1.0  # visible during the drag
     xdotool(viewer, "mouseup", 1)
@@ -89,15 +89,15 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
     A click with Shift also selects another, without showing it.
     """
     session = viewer.session
-    press(viewer, key_at(viewer, JOY))
-    assert viewer.face.selection.keys == {JOY}
+    press(viewer, key_at(viewer, JOY_KEY))
+    assert viewer.face.selection.keys == {JOY_KEY}
     assert session.time == 1.0
     assert session.values["joy"] == 1.0
-    press(viewer, key_at(viewer, REST), "shift")
-    assert viewer.face.selection.keys == {JOY, REST}
+    press(viewer, key_at(viewer, REST_KEY), "shift")
+    assert viewer.face.selection.keys == {JOY_KEY, REST_KEY}
     assert session.time == 1.0
-    press(viewer, key_at(viewer, JOY), "shift")
-    assert viewer.face.selection.keys == {REST}
+    press(viewer, key_at(viewer, JOY_KEY), "shift")
+    assert viewer.face.selection.keys == {REST_KEY}
     x, y = key_at(viewer, KeyId(POSE_TRACK, 1.0))
     press(viewer, (x + 50, y))
     assert not viewer.face.selection.keys
@@ -107,13 +107,13 @@ def test_a_click_selects_a_key_and_goes_there(viewer):
 def test_a_box_selects_keys_that_then_move_together(viewer):
     """A drag over empty space selects poses and keys in a box; they move together."""
     session = viewer.session
-    x, y = key_at(viewer, JOY)
+    x, y = key_at(viewer, JOY_KEY)
     right, low = key_at(viewer, KeyId("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     chosen = viewer.face.selection.keys
     assert {place.track for place in chosen} == {POSE_TRACK, "blink"}
     assert len(chosen) == 5
-    drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
+    drag_and_release(viewer, key_at(viewer, JOY_KEY), (-30, 0))
     by = session.script.poses[1].time - 1.0
     assert by < -0.1
     times = [key.time + 0.0 for key in session.script.tracks["blink"].keys]

@@ -19,7 +19,7 @@ from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 from risorius.assets.loading import read_words
 
-from .driving import HELLO, run, set_by_hand
+from .driving import HELLO_FILE, run, set_by_hand
 
 SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
@@ -79,7 +79,7 @@ class Still(FaceScene):
 @settings(max_examples=60, deadline=None)
 def test_undo_gives_the_state_before(steps):
     """After any commands, undo returns to each earlier state, and redo to the last."""
-    session = Session(SHARED, load_script(HELLO))
+    session = Session(SHARED_CLOCK, load_script(HELLO_FILE))
 
     def state():
         by_hand = None if session.is_following else dict(session.values)
@@ -104,7 +104,7 @@ def test_undo_gives_the_state_before(steps):
         assert state() == earlier
 
 
-SHARED = Still()
+SHARED_CLOCK = Still()
 
 
 # Copies.

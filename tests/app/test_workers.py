@@ -15,7 +15,7 @@ from risorius.app.workers import WorkerPool, run_all, share_of_cores
 from . import working
 from .command_line import started
 
-STOPPED = """
+STOPPED_PROGRAM = """
 import sys
 from pathlib import Path
 from risorius.app.stopping import handle_signals
@@ -141,7 +141,7 @@ def test_an_early_stop_leaves_no_process():
 )
 def test_nothing_runs_on_when_it_is_stopped(tmp_path, number):
     """Ctrl-C, `kill`, and a sudden end of the calling process stop all work."""
-    process = started("-c", STOPPED, tmp_path)
+    process = started("-c", STOPPED_PROGRAM, tmp_path)
     wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)
     threads = Path(f"/proc/{process.pid}/task").glob("*/children")
     workers = [int(each) for file in threads for each in file.read_text().split()]

@@ -13,7 +13,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 from risorius.assets.loading import load
 
-SETTLED = 1.2  # [s]
+SETTLING_TIME = 1.2  # [s]
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def amounts(scene, wrinkling, **pose):
     """Amounts of wrinkles in a settled pose."""
     scene.reset()
     scene.pose(pose)
-    scene.step(SETTLED)
+    scene.step(SETTLING_TIME)
     return wrinkling.amounts(scene.positions).astype(np.float64)
 
 

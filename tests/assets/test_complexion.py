@@ -36,7 +36,7 @@ from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
-ANGLES = st.floats(DARKEST_TONE, LIGHTEST_TONE)
+TONE_ANGLES = st.floats(DARKEST_TONE, LIGHTEST_TONE)
 
 
 def light_at(head, image, *names):
@@ -79,7 +79,7 @@ def test_tones_are_in_order(head):
 
 
 @pytest.mark.slow
-@given(ANGLES)
+@given(TONE_ANGLES)
 @settings(max_examples=12, deadline=None)
 def test_faces_keep_their_features(head, angle):
     """In any tone, lips are redder than skin, brows and nostrils darker; skin is never grey."""

@@ -21,7 +21,7 @@ from tests.heads import shape
 from tests.meshes import ball
 
 Array = npt.NDArray[np.float64]
-REACH = 25.0  # [mm] around an eye, for the eye's parts
+EYE_DISTANCE = 25.0  # [mm] around an eye, for the eye's parts
 SIDES, RINGS = 3, 30  # samples along each edge of the rim, and from the middle to the rim
 
 
@@ -68,7 +68,7 @@ def test_nothing_is_seen_behind_an_eye(fitted, yaw):
     loops = [fitted.vertices[loop] for loop in boundary_loops(fitted.faces)]
     for eye in fitted.eyes:
         edge = min(loops, key=lambda loop: norm(loop - eye.centre, axis=1).max())
-        near = parts[norm(parts.mean(axis=1) - eye.centre, axis=1) < REACH]
+        near = parts[norm(parts.mean(axis=1) - eye.centre, axis=1) < EYE_DISTANCE]
         assert _meets(_across(edge @ view.T), near @ view.T).all()
 
 

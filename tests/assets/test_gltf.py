@@ -14,7 +14,7 @@ from tests.assets.gltf_files import GltfMaker
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
 UV = np.array([[0.125, 0.75], [0.5, 0.75], [0.5, 0.25], [0.125, 0.25]])  # v grows downward
-UP = UV * [1, -1] + [0, 1]
+UP_UV = UV * [1, -1] + [0, 1]
 RED = (250, 10, 20)
 GREEN = (10, 240, 30)
 
@@ -71,7 +71,7 @@ def test_texture_coordinates_may_be_normalized_integers(maker, tmp_path, kind, g
     rows = np.rint(UV * greatest) if greatest > 1 else UV
     painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
     found = read(maker, tmp_path)
-    assert np.abs(uv_of(found) - UP[FACES]).max() < 0.6 / greatest + 1e-6
+    assert np.abs(uv_of(found) - UP_UV[FACES]).max() < 0.6 / greatest + 1e-6
 
 
 def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
@@ -79,7 +79,7 @@ def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
     first = maker.accessor(np.zeros((4, 2)))
     third = maker.accessor(UV)
     painted(maker, first, {"texCoord": 2}, TEXCOORD_1=first, TEXCOORD_2=third)
-    assert np.allclose(uv_of(read(maker, tmp_path)), UP[FACES])
+    assert np.allclose(uv_of(read(maker, tmp_path)), UP_UV[FACES])
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_older_materials_have_a_picture(maker, tmp_path):
     number = maker.add("materials", {"extensions": {"KHR_materials_pbrSpecularGlossiness": info}})
     show_square(maker, {"TEXCOORD_1": maker.accessor(UV)}, material=number)
     found = read(maker, tmp_path)
-    assert np.allclose(uv_of(found), UP[FACES])
+    assert np.allclose(uv_of(found), UP_UV[FACES])
     assert found.texture.pictures[0]()[0, 0].tolist() == list(GREEN)
 
 
@@ -419,7 +419,7 @@ def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
     path.write_bytes(maker.document(uri="head%20data.bin" if is_beside else inline))
     found = assets.read_mesh(path)
     assert np.allclose(shape_of(found), SQUARE[FACES])
-    assert np.allclose(uv_of(found), UP[FACES])
+    assert np.allclose(uv_of(found), UP_UV[FACES])
     assert found.texture.pictures[0]()[0, 0].tolist() == list(RED)
 
 

@@ -12,9 +12,9 @@ from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
-from tests.heads import METRES, user_head
+from tests.heads import METRES_PER_MILLIMETRE, user_head
 
-JAW = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
+JAW_COUNT = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
 
 
 def errors(mesh, true):
@@ -39,9 +39,9 @@ def test_other_persons_are_found(seed):
     """
     person = make_person(sample_identity(seed))
     off = errors(Mesh(person.vertices, person.faces), person.vertices[person.landmarks])
-    assert np.median(off[JAW:]) < 1.5
-    assert off[JAW:].max() < 6.0
-    assert off[:JAW].max() < 25.0
+    assert np.median(off[JAW_COUNT:]) < 1.5
+    assert off[JAW_COUNT:].max() < 6.0
+    assert off[:JAW_COUNT].max() < 25.0
 
 
 @pytest.mark.slow
@@ -50,7 +50,7 @@ def test_unit_axes_and_other_pieces_do_not_matter():
     other = user_head()
     true = other.mesh.vertices[other.landmarks]
     balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
-    corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES
+    corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES_PER_MILLIMETRE
     ball = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5]])
     vertices = other.mesh.vertices
     faces = other.mesh.faces[:, ::-1]
@@ -58,13 +58,13 @@ def test_unit_axes_and_other_pieces_do_not_matter():
         faces = np.vstack([faces, ball + len(vertices)])
         vertices = np.vstack([vertices, corners + middle])
     mesh = Mesh(vertices, faces.astype(np.int32))
-    off = errors(mesh, true) / METRES
+    off = errors(mesh, true) / METRES_PER_MILLIMETRE
     assert np.median(off) < 2.0
-    assert off[JAW:].max() < 6.0
+    assert off[JAW_COUNT:].max() < 6.0
     found = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
     skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
     gap = norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
-    assert gap.max() < 1e-3 * METRES
+    assert gap.max() < 1e-3 * METRES_PER_MILLIMETRE
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_more_points_make_it_better_and_stay():
     known = {number: true[number] for number in (*FIRST_LANDMARKS, 4, 8, 12)}
     many = norm(guess(mesh, known) - true, axis=1)
     assert many[[*known]].max() < 1e-9
-    assert many[:JAW].mean() < 0.7 * few[:JAW].mean()
+    assert many[:JAW_COUNT].mean() < 0.7 * few[:JAW_COUNT].mean()
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from risorius.assets.identities.furrow_map import shared_map, with_lines
 from risorius.assets.identities.lines import Fan, Lines, Spread
 from risorius.assets.loading import load
 
-PLAIN = Lines(
+PLAIN_LINES = Lines(
     seed=5,
     forehead=4,
     spread=Spread.WHOLE,
@@ -37,8 +37,8 @@ def people(age: float, sex: Sex | None = None) -> list[Lines]:
 
 
 def drawn(shrink: int = 1, **own: object) -> np.ndarray:
-    """The map of PLAIN with some fields of the lines replaced."""
-    return with_lines(load("head").wrinkles, PLAIN._replace(**own), shrink).map.astype(int)
+    """The map of PLAIN_LINES with some fields of the lines replaced."""
+    return with_lines(load("head").wrinkles, PLAIN_LINES._replace(**own), shrink).map.astype(int)
 
 
 def about(name: str, high: int, wide: int) -> tuple[slice, slice]:

@@ -52,7 +52,7 @@ def test_types_and_shapes_are_those_of_the_docstrings(head):
     assert len(head.layers) == 4
 
 
-ASKED = {
+READS_FILE = {
     "head.npz": lambda head: head.vertices,
     "head.png": lambda head: head.albedo,
     "head_fine_shape.npz": lambda head: head.fine_shape,
@@ -64,7 +64,7 @@ ASKED = {
 }
 
 
-@pytest.mark.parametrize("name", ASKED)
+@pytest.mark.parametrize("name", READS_FILE)
 def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_path):
     """Missing and broken files are reported when they are needed, with the remedy.
 
@@ -75,12 +75,12 @@ def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_pa
     for content in (b"nothing", whole[:5000], b""):
         (folder / name).write_bytes(content)
         with pytest.raises(AssetError, match=rf"{name} cannot be read .*; install risorius again"):
-            ASKED[name](load_head(folder / "head.npz"))
+            READS_FILE[name](load_head(folder / "head.npz"))
     (folder / name).unlink()
     if name != "head.npz":
         load_head(folder / "head.npz")  # enough for a simulation
     with pytest.raises(AssetError, match=rf"{name} cannot be read \(.*No such file.*; install"):
-        ASKED[name](load_head(folder / "head.npz"))
+        READS_FILE[name](load_head(folder / "head.npz"))
 
 
 def test_files_are_made_from_this_head(head):

@@ -91,8 +91,8 @@ def test_corners_of_stl_become_vertices(tmp_path):
     assert mesh.faces[0].tolist() == [0, 1, 2]
 
 
-CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 1.5, 0)]
-HOUSE = [[0, 1, 2], [0, 2, 3], [2, 4, 3]]
+HOUSE_CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 1.5, 0)]
+HOUSE_FACES = [[0, 1, 2], [0, 2, 3], [2, 4, 3]]
 
 
 def ply(form, lists, element="face", **more):
@@ -105,7 +105,12 @@ def ply(form, lists, element="face", **more):
     colours = more.get("colours")
     colour_kind = more.get("colour_kind", "uchar")
     names = more.get("names", "red green blue").split() if colours is not None else []
-    lines = ["ply", f"format {form} 1.0", "comment made by hand", f"element vertex {len(CORNERS)}"]
+    lines = [
+        "ply",
+        f"format {form} 1.0",
+        "comment made by hand",
+        f"element vertex {len(HOUSE_CORNERS)}",
+    ]
     lines += [f"property double {axis}" for axis in "xyz"]
     lines += [f"property {colour_kind} {name}" for name in names]
     lines += [f"element {element} {len(lists)}", "property uchar flags"]
@@ -113,13 +118,13 @@ def ply(form, lists, element="face", **more):
     header = "\n".join(lines).encode()
     rows = [] if colours is None else [[*row] for row in colours]
     if form == "ascii":
-        points = [[*xyz, *row] for xyz, row in zip(CORNERS, rows or [[]] * 5, strict=True)]
+        points = [[*xyz, *row] for xyz, row in zip(HOUSE_CORNERS, rows or [[]] * 5, strict=True)]
         body = [*points, *([7, len(each), *each] for each in lists)]
         return header + "".join(" ".join(map(str, row)) + "\n" for row in body).encode()
     order = ">" if "big" in form else "<"
     letters = {"uchar": "B", "ushort": "H", "float": "f", "int": "i", "uint": "I"}
     body = b""
-    for place, xyz in enumerate(CORNERS):
+    for place, xyz in enumerate(HOUSE_CORNERS):
         body += struct.pack(f"{order}3d", *xyz)
         if rows:
             body += struct.pack(f"{order}{len(names)}{letters[colour_kind]}", *rows[place])
@@ -128,23 +133,23 @@ def ply(form, lists, element="face", **more):
     return header + body
 
 
-FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
+PLY_FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
 
 
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("lists", [HOUSE, [[0, 1, 2, 3], [2, 4, 3]], [[0, 1, 2, 4, 3]]])
+@pytest.mark.parametrize("form", PLY_FORMS)
+@pytest.mark.parametrize("lists", [HOUSE_FACES, [[0, 1, 2, 3], [2, 4, 3]], [[0, 1, 2, 4, 3]]])
 def test_polygons_of_ply_may_be_of_any_sizes(tmp_path, form, lists):
     """A polygon of any size becomes a fan, in the order of the file."""
     path = tmp_path / "house.ply"
     path.write_bytes(ply(form, lists))
     mesh = assets.read_mesh(path)
-    assert mesh.vertices.tolist() == [list(map(float, each)) for each in CORNERS]
+    assert mesh.vertices.tolist() == [list(map(float, each)) for each in HOUSE_CORNERS]
     fans = [[a[0], a[k], a[k + 1]] for a in lists for k in range(1, len(a) - 1)]
     assert mesh.faces.tolist() == fans
     assert mesh.colours is None
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", PLY_FORMS)
 def test_ply_files_may_hold_strips(tmp_path, form):
     """Strips end at -1, and every second triangle of a strip is reversed."""
     path = tmp_path / "strips.ply"
@@ -153,7 +158,7 @@ def test_ply_files_may_hold_strips(tmp_path, form):
     assert mesh.faces.tolist() == [[1, 2, 0], [0, 2, 3], [2, 4, 3], [0, 3, 1]]
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", PLY_FORMS)
 @pytest.mark.parametrize(
     ("colour_kind", "row", "names"),
     [
@@ -170,11 +175,11 @@ def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, nam
     """Colours are read as integers of 8 or 16 bits or as fractions, with all usual names."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
-    path.write_bytes(ply(form, HOUSE, **colours))
+    path.write_bytes(ply(form, HOUSE_FACES, **colours))
     mesh = assets.read_mesh(path)
     wanted = [1, 1, 1] if row == (1, 1, 1) else [250, 125, 1]
     assert mesh.colours.tolist() == [wanted] * 5
-    assert mesh.faces.tolist() == HOUSE
+    assert mesh.faces.tolist() == HOUSE_FACES
 
 
 @pytest.mark.parametrize("end", ["\r\n", " \r\n", "\n"])
@@ -183,8 +188,8 @@ def test_lines_may_end_anyhow(tmp_path, end):
 
     OBJ lines may continue after a backslash.
     """
-    text = ply("ascii", HOUSE)
-    head, body = ply("binary_little_endian", HOUSE).split(b"end_header\n")
+    text = ply("ascii", HOUSE_FACES)
+    head, body = ply("binary_little_endian", HOUSE_FACES).split(b"end_header\n")
     files = {
         "text.ply": text.replace(b"\n", end.encode()),
         "bytes.ply": head.replace(b"\n", end.encode()) + b"end_header" + end.encode() + body,
@@ -198,5 +203,5 @@ def test_lines_may_end_anyhow(tmp_path, end):
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
         mesh = assets.read_mesh(tmp_path / name)
-        assert mesh.faces.tolist() == HOUSE
-        assert mesh.vertices.tolist() == [list(map(float, each)) for each in CORNERS]
+        assert mesh.faces.tolist() == HOUSE_FACES
+        assert mesh.vertices.tolist() == [list(map(float, each)) for each in HOUSE_CORNERS]

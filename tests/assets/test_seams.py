@@ -13,7 +13,10 @@ from risorius.assets.model import Head
 from tests.assets.gltf_files import GltfMaker
 from tests.assets.test_gltf import material, png
 
-UPPER, LOWER = [61, 62, 63], [67, 66, 65]  # landmarks in the middle of the inner lips
+UPPER_LIP_LANDMARKS, LOWER_LIP_LANDMARKS = (
+    [61, 62, 63],
+    [67, 66, 65],
+)  # landmarks in the middle of the inner lips
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +65,7 @@ def test_triangles_of_their_own_vertices_hang_together(head, plain, tmp_path):
 @pytest.mark.parametrize("way", ["bare", "pictured", "moved apart"])
 def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
     """Lips that touch exactly are kept separate: with and without a picture, and with a shape."""
-    upper, lower = (head.landmarks[lip] for lip in (UPPER, LOWER))
+    upper, lower = (head.landmarks[lip] for lip in (UPPER_LIP_LANDMARKS, LOWER_LIP_LANDMARKS))
     vertices = head.vertices.copy()
     vertices[lower] = vertices[upper]
     maker = GltfMaker()
@@ -89,7 +92,7 @@ def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
 def test_lips_that_share_vertices_are_refused(head, tmp_path):
     """Lips that share vertices cannot part, so the head is refused."""
     number = np.arange(len(head.vertices))
-    number[head.landmarks[LOWER]] = head.landmarks[UPPER]
+    number[head.landmarks[LOWER_LIP_LANDMARKS]] = head.landmarks[UPPER_LIP_LANDMARKS]
     maker = GltfMaker()
     maker.shown({"mesh": maker.mesh(maker.primitive(head.vertices, number[head.faces]))})
     marks = tmp_path / "head.json"

@@ -5,12 +5,12 @@ import pytest
 
 from risorius.assets import Segment
 
-MIRRORED = {
+MIRROR_SEGMENTS = {
     Segment.RIGHT_EYE: Segment.LEFT_EYE,
     Segment.RIGHT_BROW: Segment.LEFT_BROW,
     Segment.RIGHT_EAR: Segment.LEFT_EAR,
 }
-PLACES = {
+SEGMENT_OF_POINT = {
     "glabella": Segment.SKIN, "trichion": Segment.SKIN, "vertex": Segment.HAIR,
     "cheek_left": Segment.SKIN, "pogonion": Segment.SKIN, "gnathion": Segment.SKIN,
     "temple_right": Segment.SKIN, "zygion_left": Segment.SKIN, "sublabiale": Segment.SKIN,
@@ -39,17 +39,17 @@ def test_the_right_half_is_the_left_one_mirrored(head):
     """A mirrored texel has the class of the subject's other side; left is at large u."""
     mirrored = head.segments[:, ::-1]
     expected = head.segments.copy()
-    for right, left in MIRRORED.items():
+    for right, left in MIRROR_SEGMENTS.items():
         expected[head.segments == right] = left
         expected[head.segments == left] = right
         assert np.nonzero(head.segments == left)[1].min() >= head.segments.shape[1] // 2
     assert np.array_equal(mirrored, expected)
 
 
-@pytest.mark.parametrize("place", list(PLACES))
+@pytest.mark.parametrize("place", list(SEGMENT_OF_POINT))
 def test_named_points_have_the_class_of_their_region(head, place):
     """Anatomical points well within a region have the region's class."""
-    assert at(head, head.anatomy[place]) == [PLACES[place]]
+    assert at(head, head.anatomy[place]) == [SEGMENT_OF_POINT[place]]
 
 
 def test_lips_ears_and_lids_follow_their_rows(head):

@@ -16,7 +16,7 @@ from risorius.assets.fitting.landmark_file import LANDMARK_COUNT, MisfitError, U
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import Mesh
 
-from ..heads import METRES, TURN, shape, user_head, write_topology
+from ..heads import METRES_PER_MILLIMETRE, TURN_MATRIX, shape, user_head, write_topology
 
 TABLE = read_toml(Path(assets.__file__).with_name("topologies.toml"))["topology"]
 
@@ -42,7 +42,7 @@ def with_pieces_in_front(mesh):
 
 def as_another(head):
     """The built-in head's vertices with another shape, unit and place."""
-    return Mesh(shape(head.vertices) @ TURN.T * METRES, head.faces)
+    return Mesh(shape(head.vertices) @ TURN_MATRIX.T * METRES_PER_MILLIMETRE, head.faces)
 
 
 def test_our_own_heads_are_known_beside_other_pieces():

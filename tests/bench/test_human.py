@@ -17,7 +17,7 @@ from risorius.bench.human import (
 from risorius.geometry.normals import vertex_normals
 
 WEIGHTS = np.array([1.5, -0.8])
-TURN = 0.03  # [radians]
+HEAD_TURN = 0.03  # [radians]
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +33,8 @@ def space() -> IdentitySpace:
 
 def rest_of(space, vertices):
     """The residual outside the model space for a head that is turned and moved."""
-    c = np.cos(TURN)
-    s = np.sin(TURN)
+    c = np.cos(HEAD_TURN)
+    s = np.sin(HEAD_TURN)
     moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
     normals = vertex_normals(moved, space.triangles)
     surface = HeadMesh(moved, space.triangles, normals, moved[space.landmarks])

@@ -9,11 +9,11 @@ from numpy.linalg import norm
 from risorius import assets, sim
 from risorius.app.errors import UserError
 from risorius.bench.motion import Row, blobs_of, measure, report, targets
-from tests.heads import METRES, SHIFT, TURN, shape, user_head
+from tests.heads import METRES_PER_MILLIMETRE, SHIFT_VECTOR, TURN_MATRIX, shape, user_head
 from tests.sim.poses import settled_displacement
 
 # Scored fields: each name in a reference -> the controls with the same motion on the built-in head.
-SCORED = {
+KNOWN_WEIGHTS = {
     "jawOpen": {"jawOpen": 1.0},
     "JawForward": {"jawForward": 1.0},
     "jawLeft": {"jaw_sideways": 1.0},
@@ -35,18 +35,19 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
     simulation = sim.create(head)
 
     def field(moved):
-        changed = (shape(head.vertices + moved) - shape(head.vertices)) @ TURN.T
-        return changed * METRES
+        changed = (shape(head.vertices + moved) - shape(head.vertices)) @ TURN_MATRIX.T
+        return changed * METRES_PER_MILLIMETRE
 
     fields = {
-        name: field(settled_displacement(simulation, values)) for name, values in SCORED.items()
+        name: field(settled_displacement(simulation, values))
+        for name, values in KNOWN_WEIGHTS.items()
     }
     closed = settled_displacement(simulation, {"jaw_open": 1.0, "lips_closed": 1.0})
     fields["mouthClose"] = field(closed - settled_displacement(simulation, {"jaw_open": 1.0}))
     folder = tmp_path_factory.mktemp("reference")
     np.savez(
         folder / "face.npz",
-        vertices=shape(head.vertices) @ TURN.T * METRES + SHIFT,
+        vertices=shape(head.vertices) @ TURN_MATRIX.T * METRES_PER_MILLIMETRE + SHIFT_VECTOR,
         triangles=head.faces,
         landmarks68=head.landmarks,
         earWiggle=fields["jawOpen"],
@@ -61,7 +62,7 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
 def test_own_motion_is_known_again(scored):
     """The built-in head's motion, carried to another head, nearly equals each original."""
     rows, left_out = scored
-    assert set(rows) == {*SCORED, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
+    assert set(rows) == {*KNOWN_WEIGHTS, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
     assert left_out == ["earWiggle", "eyeBlinkRight"]  # an unknown name, and a field without motion
     cosines = {name: row.cosine for name, row in rows.items()}
     # The built-in head has its own mandible; on another head the mandible is guessed from

@@ -10,19 +10,19 @@ from numpy.testing import assert_allclose
 from risorius.bench import reference
 from tests.app.command_line import risorius, succeeded
 
-SIZE = 40  # cells along a side of the face
-COUNT = (SIZE + 1) ** 2  # vertices of the face
-LIFT = np.array([0.0, 0.5, 0.25])
+CELL_COUNT = 40  # cells along a side of the face
+VERTEX_COUNT = (CELL_COUNT + 1) ** 2  # vertices of the face
+LIFT_VECTOR = np.array([0.0, 0.5, 0.25])
 
 
 def face():
     """A dome of quads, and one more vertex behind it, which the last quad uses."""
-    x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, SIZE + 1)] * 2)
+    x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, CELL_COUNT + 1)] * 2)
     z = 8.0 - 0.05 * (x**2 + y**2) + 0.1 * np.sin(3.0 * x)
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    first = (np.arange(SIZE)[:, None] * (SIZE + 1) + np.arange(SIZE)).ravel()
-    quads = np.stack([first, first + 1, first + SIZE + 2, first + SIZE + 1], axis=1)
-    behind = [[COUNT, 0, 1, 2]]
+    first = (np.arange(CELL_COUNT)[:, None] * (CELL_COUNT + 1) + np.arange(CELL_COUNT)).ravel()
+    quads = np.stack([first, first + 1, first + CELL_COUNT + 2, first + CELL_COUNT + 1], axis=1)
+    behind = [[VERTEX_COUNT, 0, 1, 2]]
     return np.vstack([vertices, [[0.0, 0.0, -9.0]]]), np.vstack([quads, behind])
 
 
@@ -39,13 +39,13 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     One of the files is packed.
     """
-    monkeypatch.setattr(reference, "FACE_VERTICES", COUNT)
+    monkeypatch.setattr(reference, "FACE_VERTICES", VERTEX_COUNT)
     model = tmp_path / "checkout" / "FaceXModel"
     model.mkdir(parents=True)
     vertices, quads = face()
     (model / "generic_neutral_mesh.obj").write_bytes(obj(vertices, quads))
-    (model / "jawOpen.obj").write_bytes(obj(vertices + LIFT, quads))
-    (model / "mouthSmile_L.obj.gz").write_bytes(gzip.compress(obj(vertices - LIFT, quads)))
+    (model / "jawOpen.obj").write_bytes(obj(vertices + LIFT_VECTOR, quads))
+    (model / "mouthSmile_L.obj.gz").write_bytes(gzip.compress(obj(vertices - LIFT_VECTOR, quads)))
     (model / "identity000.obj").write_bytes(obj(1.01 * vertices, quads))
     (model.parent / "LICENSE").write_text("as you like")
     numbers = ", ".join(map(str, range(68)))
@@ -72,8 +72,8 @@ def test_the_face_and_its_motion(checkout):
     assert set(arrays) == {"vertices", "triangles", "landmarks68", "jawOpen", "mouthSmile_L"}
     assert_allclose(arrays["vertices"], vertices[:-1], atol=1e-5)
     assert arrays["triangles"][:2].tolist() == [quads[0, :3].tolist(), quads[0, [0, 2, 3]].tolist()]
-    assert len(arrays["triangles"]) == 2 * SIZE**2  # none that reaches behind the face
-    assert_allclose(arrays["jawOpen"], np.tile(LIFT, (COUNT, 1)), atol=2e-6)
+    assert len(arrays["triangles"]) == 2 * CELL_COUNT**2  # none that reaches behind the face
+    assert_allclose(arrays["jawOpen"], np.tile(LIFT_VECTOR, (VERTEX_COUNT, 1)), atol=2e-6)
     assert_allclose(arrays["mouthSmile_L"], -arrays["jawOpen"], atol=2e-6)
     assert arrays["landmarks68"].tolist() == list(range(68))
 
@@ -81,7 +81,7 @@ def test_the_face_and_its_motion(checkout):
 def test_identity_modes(checkout):
     """Each identity mode is the motion of the face by its component."""
     files = made(checkout)
-    assert files["identity_modes"]["modes"].shape == (1, COUNT, 3)
+    assert files["identity_modes"]["modes"].shape == (1, VERTEX_COUNT, 3)
     expected = 0.01 * files["face"]["vertices"]
     assert_allclose(files["identity_modes"]["modes"][0], expected, atol=1e-5)
 

@@ -7,9 +7,9 @@ from risorius.bench import commands, gaps, motion, quality, subjects
 from risorius.bench.gaps import Pose
 from risorius.bench.quality import BEST_METHOD, STATIC_METHOD, Score
 
-WHOLE = Pose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
-ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.8)
-NEARER = [
+BLINK_POSE = Pose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
+JOY_ROW = motion.Row("joy", 0.96, 1.0, 0.1, 0.8)
+BETTER_SCORES = [
     Score(STATIC_METHOD, "joy", 1.0, 1.0, 10.0, 9.0),
     Score(BEST_METHOD, "joy", 2.0, 0.6, 6.0, 9.0),
 ]
@@ -25,17 +25,17 @@ def run(command, measured, *words):
 
 
 def of_gaps(**change):
-    poses = [*[WHOLE] * 99, WHOLE._replace(**change)]
+    poses = [*[BLINK_POSE] * 99, BLINK_POSE._replace(**change)]
     return run(commands.bench_gaps, {(gaps, "measure"): poses})
 
 
 def of_motion(**change):
-    measured = [*[ALIKE] * 9, ALIKE._replace(**change)], []
+    measured = [*[JOY_ROW] * 9, JOY_ROW._replace(**change)], []
     return run(commands.bench_motion, {(motion, "measure"): measured}, "--reference", ".")
 
 
 def of_quality(**change):
-    scores = [NEARER[0], NEARER[1]._replace(**change)]
+    scores = [BETTER_SCORES[0], BETTER_SCORES[1]._replace(**change)]
     measured = {(subjects, "built_in"): None, (quality, "measure"): scores}
     return run(commands.bench_quality, measured)
 

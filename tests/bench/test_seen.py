@@ -23,12 +23,12 @@ MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
 needs_model = pytest.mark.skipif(
     not MODEL.is_file(), reason="FACE_LANDMARKER names no model of the face tracker"
 )
-CALM = dict.fromkeys(ARKIT_SHAPES, 0.05)
+NEUTRAL_SCORES = dict.fromkeys(ARKIT_SHAPES, 0.05)
 
 
 def over(**scores):
     """Scores with these differences from the neutral face."""
-    return {**CALM, **{name: 0.05 + score for name, score in scores.items()}}
+    return {**NEUTRAL_SCORES, **{name: 0.05 + score for name, score in scores.items()}}
 
 
 def test_every_shape_is_asked_for_once():
@@ -46,7 +46,7 @@ def test_every_shape_is_asked_for_once():
 def test_a_pair_counts_by_its_mean():
     """A pair's score is the mean of both sides, after subtraction of the neutral face's scores."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
-    shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
+    shape = seen.compared(scores, NEUTRAL_SCORES, ("mouthSmileLeft", "mouthSmileRight"))
     assert shape == (approx(0.4), "eyeSquint", approx(0.35))
     assert shape.verdict == "seen"
     assert seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"

@@ -17,14 +17,14 @@ import pytest
 from tests.as_installed import lay
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "blender"
-HERE = sys.executable if find_spec("bpy") else ""
-BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", HERE)
+OWN_PYTHON = sys.executable if find_spec("bpy") else ""
+BLENDER_PYTHON = os.environ.get("RISORIUS_BLENDER_PYTHON", OWN_PYTHON)
 
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """The results of in_blender.py."""
-    if not BLENDER:
+    if not BLENDER_PYTHON:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
     folder = tmp_path_factory.mktemp("blender")
     lay(folder / "lib")
@@ -32,7 +32,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     environment = {**os.environ, "PYTHONPATH": str(folder / "lib")}
     environment["BLENDER_USER_RESOURCES"] = str(folder / "blender")
     ended = subprocess.run(
-        [BLENDER, str(program), str(folder)],
+        [BLENDER_PYTHON, str(program), str(folder)],
         env=environment,
         capture_output=True,
         text=True,
@@ -137,11 +137,13 @@ def test_the_zip_has_all_that_it_needs(tmp_path, version, python, beyond):
     assert names - {wheel.removeprefix("./") for wheel in wheels} == {
         *("__init__.py", "blender_manifest.toml")
     }
-    if BLENDER:
+    if BLENDER_PYTHON:
         find = "import bpy; print(bpy.utils.resource_path('LOCAL'))"
-        message = subprocess.run([BLENDER, "-c", find], capture_output=True, text=True, check=True)
+        message = subprocess.run(
+            [BLENDER_PYTHON, "-c", find], capture_output=True, text=True, check=True
+        )
         (judge,) = Path(message.stdout.strip()).rglob("blender_ext.py")
-        subprocess.run([BLENDER, judge, "validate", file], check=True, capture_output=True)
+        subprocess.run([BLENDER_PYTHON, judge, "validate", file], check=True, capture_output=True)
 
 
 def test_the_manifest_keeps_the_rules():

@@ -10,9 +10,9 @@ import click
 
 from risorius.__main__ import command as risorius
 
-IMAGE = "capture good.toml -o x.png --size 16x16 --fps 5 --quiet"
+CAPTURE = "capture good.toml -o x.png --size 16x16 --fps 5 --quiet"
 
-ACCEPTED = (
+ACCEPTED_COMMANDS = (
     "--help",
     "bench --help",
     "reproduce figure8",
@@ -21,39 +21,39 @@ ACCEPTED = (
     "doctor --offscreen --quiet",
     "view --size 320x200",
     "replay good.toml --once",
-    IMAGE,
-    f"{IMAGE} --time 0.1 --camera 1e3,-1e3,1e-3",
-    f"{IMAGE} --style wrinkles=0,skin=clay --style splits,wireframe",
-    f"{IMAGE} --refiner loop --option levels=2",
-    f"{IMAGE} --look paper --compare smooth,none,loop",
-    f"{IMAGE} --option scheme=cubic --option blend=OFF",
-    f"{IMAGE} --option criterion=displacement+normal+rest --option scheme=cubic",
-    f"{IMAGE} --look paper --option threshold_once=1e-300 --option coherent=true",
+    CAPTURE,
+    f"{CAPTURE} --time 0.1 --camera 1e3,-1e3,1e-3",
+    f"{CAPTURE} --style wrinkles=0,skin=clay --style splits,wireframe",
+    f"{CAPTURE} --refiner loop --option levels=2",
+    f"{CAPTURE} --look paper --compare smooth,none,loop",
+    f"{CAPTURE} --option scheme=cubic --option blend=OFF",
+    f"{CAPTURE} --option criterion=displacement+normal+rest --option scheme=cubic",
+    f"{CAPTURE} --look paper --option threshold_once=1e-300 --option coherent=true",
     "capture good.toml -o full --overwrite --size 16x16 --fps 5 --quiet",
     "capture good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     "capture good.toml --sheet new/x.png --size 16x16 --fps 5 --quiet",
     "capture --scene plane --set amplitude=1 -o x.png --size 16x16 --quiet",
 )
 
-REFUSED = {
+REFUSED_COMMANDS = {
     # Unknown commands and options.
     "captur good.toml": "No such command 'captur'",
     "replay": "Missing argument 'SCRIPT'",
     "bench motion": "Missing option '--reference'",
     "bench reference folder -o x": "has no FaceXModel/generic_neutral_mesh.obj",
     # Numbers.
-    f"{IMAGE} --fps 0": "is not in the range",
-    f"{IMAGE} --fps fast": "'fast' is not a valid number",
-    f"{IMAGE} --fps 1/0": "'1/0' is not a valid number",
-    f"{IMAGE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
-    f"{IMAGE} --style skin=red": "'red' is none of textured, plain, clay",
-    f"{IMAGE} --style shiny": "'shiny' is unknown; allowed are wireframe, splits, wires, skin=",
-    f"{IMAGE} --time 1:2": "a picture has one time",
+    f"{CAPTURE} --fps 0": "is not in the range",
+    f"{CAPTURE} --fps fast": "'fast' is not a valid number",
+    f"{CAPTURE} --fps 1/0": "'1/0' is not a valid number",
+    f"{CAPTURE} --style wrinkles={'9' * 5000}": "write a number from 0 to 1",
+    f"{CAPTURE} --style skin=red": "'red' is none of textured, plain, clay",
+    f"{CAPTURE} --style shiny": "'shiny' is unknown; allowed are wireframe, splits, wires, skin=",
+    f"{CAPTURE} --time 1:2": "a picture has one time",
     # Options that commands had before.
-    f"{IMAGE} --gain all=1": "--gain was removed: convert the recording first: risorius convert",
-    f"{IMAGE} --wireframe": "--wireframe was removed: write --style wireframe",
-    f"{IMAGE} --light side": "no such file; write --style light=side",
-    f"{IMAGE} --light x.hdr --style light=side": "are both given; leave one out",
+    f"{CAPTURE} --gain all=1": "--gain was removed: convert the recording first: risorius convert",
+    f"{CAPTURE} --wireframe": "--wireframe was removed: write --style wireframe",
+    f"{CAPTURE} --light side": "no such file; write --style light=side",
+    f"{CAPTURE} --light x.hdr --style light=side": "are both given; leave one out",
     "view --light side": "no such file; write --style light=side",
     "export good.toml -o x.glb --light side": "No such option",
     "dataset -o set --count 1 --light none": "--light none: no such file or folder",
@@ -67,21 +67,21 @@ REFUSED = {
     "view --live vmc --scene plane": "moves the scene 'face'",
     "send good.toml": "is neither a table nor JSON",
     # Cameras.
-    f"{IMAGE} --camera behind": "camera 'behind': allowed are",
-    f"{IMAGE} --camera 0,0,0": "zoom above 0",
+    f"{CAPTURE} --camera behind": "camera 'behind': allowed are",
+    f"{CAPTURE} --camera 0,0,0": "zoom above 0",
     # Options of refiners (looks).
-    f"{IMAGE} --look Paper": "'Paper' is not one of 'smooth', 'paper'",
-    f"{IMAGE} --compare none,none": "would be compared with itself",
-    f"{IMAGE} --refiner magic": "refiner 'magic' is unknown; there are",
-    f"{IMAGE} --option ''": "write NAME=VALUE",
-    f"{IMAGE} --option scheme=1": "option scheme was 1, must be a word",
-    f"{IMAGE} --option scheme=loop": "the look smooth has criterion=displacement+rest",
-    f"{IMAGE} --option threshold_once=nan": "not a finite number",
-    f"{IMAGE} --option threshold_once=0.01": "is an option of the criterion normal",
-    f"{IMAGE} --option uv=1": "unknown option uv; it takes",
-    f"{IMAGE} --option coherent=on --option blend=on": "coherent",
-    f"{IMAGE} --refiner loop --option levels=0": "levels",
-    f"{IMAGE} --compare --refiner none": "other than none",
+    f"{CAPTURE} --look Paper": "'Paper' is not one of 'smooth', 'paper'",
+    f"{CAPTURE} --compare none,none": "would be compared with itself",
+    f"{CAPTURE} --refiner magic": "refiner 'magic' is unknown; there are",
+    f"{CAPTURE} --option ''": "write NAME=VALUE",
+    f"{CAPTURE} --option scheme=1": "option scheme was 1, must be a word",
+    f"{CAPTURE} --option scheme=loop": "the look smooth has criterion=displacement+rest",
+    f"{CAPTURE} --option threshold_once=nan": "not a finite number",
+    f"{CAPTURE} --option threshold_once=0.01": "is an option of the criterion normal",
+    f"{CAPTURE} --option uv=1": "unknown option uv; it takes",
+    f"{CAPTURE} --option coherent=on --option blend=on": "coherent",
+    f"{CAPTURE} --refiner loop --option levels=0": "levels",
+    f"{CAPTURE} --compare --refiner none": "other than none",
     # Options that exclude each other.
     "capture": "nothing to write",
     "capture good.toml -o x.mp4 --time 1": "for a film write --time FROM:TO",
@@ -138,13 +138,13 @@ REFUSED = {
     "export good.toml -o x": "x: has no suffix. Allowed are .glb",
     "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",
     # More options and outputs.
-    f"{IMAGE} --look paper --option threshold_once=0.2": "0 <= threshold_once <= threshold_twice",
-    f"{IMAGE} --refiner kahler-gl --option scheme=detail": "option scheme was detail, must be",
-    f"{IMAGE} --compare papre": "'papre' is neither a look (smooth, paper) nor a refiner (kahler, ",
+    f"{CAPTURE} --look paper --option threshold_once=0.2": "0 <= threshold_once <= threshold_twice",
+    f"{CAPTURE} --refiner kahler-gl --option scheme=detail": "option scheme was detail, must be",
+    f"{CAPTURE} --compare papre": "'papre' is neither a look (smooth, paper) nor a refiner (",
     "capture good.toml -o notes.txt/x.mp4": "cannot be written: Not a directory",
 }
 
-HOSTILE = {
+HOSTILE_VALUES = {
     "empty": "",
     "nan": "nan",
     "inf": "-inf",
@@ -155,17 +155,17 @@ HOSTILE = {
     "long": "x" * 5000,
 }
 
-GIVEN = {  # other options that a command needs before the tested option has an effect
+NEEDED_OPTIONS = {  # other options that a command needs before the tested option has an effect
     "capture": "good.toml -o x.png --size 16x16 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
     "bench motion": "--reference folder",
     "bench reference": "folder -o made",
 }
-INSTEAD = {  # options in place of those above, where the tested option excludes one of those
+REPLACED_OPTIONS = {  # options in place of those above, where the tested option excludes one
     ("capture", "--set"): "-o x.png --size 16x16 --fps 5 --time 0 --quiet",
     ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
-    ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
-    ("capture", "--landmarks"): f"{GIVEN['capture']} --head head.obj",
+    ("capture", "--head"): f"{NEEDED_OPTIONS['capture']} --landmarks marks.json",
+    ("capture", "--landmarks"): f"{NEEDED_OPTIONS['capture']} --head head.obj",
 }
 
 
@@ -180,12 +180,19 @@ def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
             is_option = isinstance(option, click.Option)
             if is_option and (option.is_flag or option.name == "help"):
                 continue
-            for name, value in HOSTILE.items():
+            for name, value in HOSTILE_VALUES.items():
                 if is_option:
-                    given = INSTEAD.get((words, option.opts[-1]), GIVEN.get(words, ""))
+                    given = REPLACED_OPTIONS.get(
+                        (words, option.opts[-1]), NEEDED_OPTIONS.get(words, "")
+                    )
                     arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
                 else:  # the argument replaces the first word
-                    arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
+                    arguments = (
+                        *path,
+                        *shlex.split(NEEDED_OPTIONS.get(words, ""))[1:],
+                        "--",
+                        value,
+                    )
                 yield f"{'-'.join(path)}-{option.name}-{name}", arguments
 
 

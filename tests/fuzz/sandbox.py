@@ -15,13 +15,13 @@ from click.testing import CliRunner
 
 from risorius.__main__ import command
 
-LONGEST = 60.0  # [s] on a busy machine with compilation; the slowest takes 2 s otherwise
+LONGEST_RUN = 60.0  # [s] on a busy machine with compilation; the slowest takes 2 s otherwise
 MOST_MEMORY = 600 << 20  # [bytes] above the memory before the input
-ROOM = 8 << 30  # [bytes] of address space; the system refuses larger requests
+MEMORY_LIMIT = 8 << 30  # [bytes] of address space; the system refuses larger requests
 LONGEST_LINE = 2200  # [characters]; names are shortened, and explanations need no more
-STATUS = Path("/proc/self/status")
+STATUS_FILE = Path("/proc/self/status")
 
-GOOD = """
+GOOD_SCRIPT = """
 [[pose]]
 time = 0.0
 [[pose]]
@@ -49,7 +49,7 @@ class Ended:
 
 def put_files(folder: Path) -> None:
     """Put good files and hostile files of every kind into a folder."""
-    (folder / "good.toml").write_text(GOOD)
+    (folder / "good.toml").write_text(GOOD_SCRIPT)
     (folder / "notes.txt").write_text("mine")
     (folder / "keep.png").write_text("mine")
     with wave.open(str(folder / "hum.wav"), "wb") as sound:
@@ -89,13 +89,13 @@ def contents(folder: Path) -> dict[str, str]:
 
 
 @contextmanager
-def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[None]:
+def bounded(seconds: float = LONGEST_RUN, memory: int = MOST_MEMORY) -> Iterator[None]:
     """Fail if the work takes too long, never ends, or takes too much memory."""
 
     def stop(*_: object) -> None:
         raise TookTooLong(f"more than {seconds:g} s")
 
-    if STATUS.exists():
+    if STATUS_FILE.exists():
         Path("/proc/self/clear_refs").write_text("5")  # the peak is measured from this point on
     before = _kilobytes("VmHWM")
     limits = resource.getrlimit(resource.RLIMIT_AS)
@@ -103,8 +103,10 @@ def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[Non
     signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)
     start = time.monotonic()
     try:
-        if STATUS.exists():
-            resource.setrlimit(resource.RLIMIT_AS, (1024 * _kilobytes("VmSize") + ROOM, limits[1]))
+        if STATUS_FILE.exists():
+            resource.setrlimit(
+                resource.RLIMIT_AS, (1024 * _kilobytes("VmSize") + MEMORY_LIMIT, limits[1])
+            )
         yield
     except TookTooLong as error:
         raise AssertionError(str(error)) from None
@@ -118,9 +120,9 @@ def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[Non
 
 def _kilobytes(name: str) -> int:
     """A memory figure of this process [kB]; 0 if the system has no such figure."""
-    if not STATUS.exists():
+    if not STATUS_FILE.exists():
         return 0
-    found = re.search(rf"{name}:\s+(\d+) kB", STATUS.read_text())
+    found = re.search(rf"{name}:\s+(\d+) kB", STATUS_FILE.read_text())
     return int(found[1]) if found else 0
 
 

@@ -4,7 +4,7 @@ import shlex
 
 import pytest
 
-from .command_inputs import ACCEPTED, REFUSED, hostile_values
+from .command_inputs import ACCEPTED_COMMANDS, REFUSED_COMMANDS, hostile_values
 from .sandbox import check_end, contents, run_command
 
 pytestmark = pytest.mark.usefixtures("ready_face", "no_long_work")
@@ -15,7 +15,7 @@ def _short(words):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("line", ACCEPTED, ids=_short)
+@pytest.mark.parametrize("line", ACCEPTED_COMMANDS, ids=_short)
 def test_good_commands(line, sandbox):
     """Commands without mistakes succeed, and add only their outputs."""
     before = contents(sandbox)
@@ -24,14 +24,14 @@ def test_good_commands(line, sandbox):
     check_end(ended, sandbox, before)
 
 
-@pytest.mark.parametrize("line", REFUSED, ids=_short)
+@pytest.mark.parametrize("line", REFUSED_COMMANDS, ids=_short)
 def test_mistakes(line, sandbox):
     """Each mistake is reported in one line, with the words in the table."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
     assert ended.code == 2, ended
     check_end(ended, sandbox, before)
-    assert REFUSED[line] in ended.err
+    assert REFUSED_COMMANDS[line] in ended.err
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ from .sandbox import bounded
 
 pytestmark = pytest.mark.slow
 
-LONGEST = 10.0  # [s] on a busy machine; the slowest takes 1 s on an idle one
+LONGEST_RUN = 10.0  # [s] on a busy machine; the slowest takes 1 s on an idle one
 MOST_MEMORY = 400_000_000  # [bytes] above the memory before the input
 
 
@@ -28,7 +28,7 @@ def quiet_and_bounded():
     """
     with warnings.catch_warnings(record=True) as caught, np.errstate(all="warn", under="ignore"):
         warnings.simplefilter("always")
-        with bounded(LONGEST, MOST_MEMORY):
+        with bounded(LONGEST_RUN, MOST_MEMORY):
             yield
     shown = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning)]
     assert shown == []

@@ -17,19 +17,22 @@ from .sandbox import bounded, check_line
 pytestmark = pytest.mark.slow
 
 ROUNDS = 1000
-PICTURE = [{"category_name": "jawOpen", "score": "0.5"}, {"category_name": "cheekPuff", "score": 0}]
-TRACKS = {"channels": [{"name": "PP", "keys": [[0, 0.1], [0.2, 0.4], [0.4, 0]]}]}
+PICTURE_SCORES = [
+    {"category_name": "jawOpen", "score": "0.5"},
+    {"category_name": "cheekPuff", "score": 0},
+]
+SPEECH_TRACKS = {"channels": [{"name": "PP", "keys": [[0, 0.1], [0.2, 0.4], [0.4, 0]]}]}
 CUES = {"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}, {"start": 0.2, "value": "X"}]}
-FILM = {"frames": [{"t": n / 30, "blendshapes": {"jawOpen": n / 9}} for n in range(9)]}
-SIDES = {"time": np.arange(9) / 30, "mouthSmile_L": np.arange(9) / 9, "AU12_L": np.zeros(9)}
-GOOD = {
+FILM_FRAMES = {"frames": [{"t": n / 30, "blendshapes": {"jawOpen": n / 9}} for n in range(9)]}
+SIDED_COLUMNS = {"time": np.arange(9) / 30, "mouthSmile_L": np.arange(9) / 9, "AU12_L": np.zeros(9)}
+READABLE_FILES = {
     "Live Link Face": table(live_link(20)).encode(),
     "OpenFace": table(openface(20)).encode(),
     "py-feat": table(pyfeat(10)).encode(),
-    "named columns": table(SIDES).encode(),
-    "a picture": json.dumps(PICTURE).encode(),
-    "a film": json.dumps(FILM).encode(),
-    "tracks": json.dumps(TRACKS).encode(),
+    "named columns": table(SIDED_COLUMNS).encode(),
+    "a picture": json.dumps(PICTURE_SCORES).encode(),
+    "a film": json.dumps(FILM_FRAMES).encode(),
+    "tracks": json.dumps(SPEECH_TRACKS).encode(),
     "cues": json.dumps(CUES).encode(),
 }
 TOKENS = (
@@ -55,18 +58,18 @@ def check(take):
     assert all(note.endswith(".") for note in take.notes)
 
 
-@pytest.mark.parametrize("name", GOOD)
+@pytest.mark.parametrize("name", READABLE_FILES)
 def test_good_recordings(name, tmp_path):
     """Undamaged recordings are read; otherwise damage in the next tests would have no effect."""
     path = tmp_path / "take"
-    path.write_bytes(GOOD[name])
+    path.write_bytes(READABLE_FILES[name])
     assert is_recording(path)
     check(read_take(path))
 
 
 def damaged(chance):
     """A good recording with a few places changed, more often near its beginning."""
-    content = bytearray(GOOD[chance.choice(sorted(GOOD))])
+    content = bytearray(READABLE_FILES[chance.choice(sorted(READABLE_FILES))])
     if chance.random() < 0.2:
         content = content[: chance.randrange(len(content))]
     return changed(content, chance, TOKENS, reaches=(200, 2000, 2**30))

@@ -17,13 +17,17 @@ from .sandbox import bounded, check_line
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
-GOOD = [path.read_bytes() for path in sorted((ROOT / "assets" / "scripts").glob("*.toml"))]
-GOOD.append(b"[tracks]\njoy = '''\n" + b"".join(b"%d 0.5 hold\n" % n for n in range(99)) + b"'''\n")
+SHIPPED_SCRIPTS = [
+    path.read_bytes() for path in sorted((ROOT / "assets" / "scripts").glob("*.toml"))
+]
+SHIPPED_SCRIPTS.append(
+    b"[tracks]\njoy = '''\n" + b"".join(b"%d 0.5 hold\n" % n for n in range(99)) + b"'''\n"
+)
 ROUNDS = 400
-KEY = "[[pose]]\ntime = 1\njoy = 1\n"
-ACCEPTED = {
-    "a mark of byte order": b"\xef\xbb\xbf" + KEY.encode(),
-    "line ends of Windows": KEY.replace("\n", "\r\n").encode(),
+ONE_KEY = "[[pose]]\ntime = 1\njoy = 1\n"
+ACCEPTED_SCRIPTS = {
+    "a mark of byte order": b"\xef\xbb\xbf" + ONE_KEY.encode(),
+    "line ends of Windows": ONE_KEY.replace("\n", "\r\n").encode(),
     "tiny value": b"[[pose]]\ntime = 1\njoy = 1e-320\n",
     "a day": b"duration = 86400\n[[pose]]\ntime = 86400.0\njoy = 1\n",
     "a name in all scripts": "[[pose]]\ntime = 1\nname = 'радость 喜び 😀'\n".encode(),
@@ -55,17 +59,17 @@ def opened(path, scenes):
     return script
 
 
-@pytest.mark.parametrize("name", ACCEPTED)
+@pytest.mark.parametrize("name", ACCEPTED_SCRIPTS)
 def test_odd_scripts(name, tmp_path, scenes):
     """Odd but valid scripts are read."""
     path = tmp_path / "odd.toml"
-    path.write_bytes(ACCEPTED[name])
+    path.write_bytes(ACCEPTED_SCRIPTS[name])
     assert opened(path, scenes).duration > 0.0
 
 
 def damaged(chance):
     """A good script with a few places changed."""
-    content = bytearray(chance.choice(GOOD))
+    content = bytearray(chance.choice(SHIPPED_SCRIPTS))
     start = chance.randrange(len(content))
     content = content[start if chance.random() < 0.2 else 0 :][: chance.choice((200, 2000, 20000))]
     return changed(content, chance, TOKENS)

@@ -17,18 +17,18 @@ from .sandbox import check_end, check_line, contents
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
-COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
-STARTING = 120.0  # [s] a separate process may have to compile first
+COMMAND_PROGRAM = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
+STARTING_LIMIT = 120.0  # [s] a separate process may have to compile first
 # A changed variable (None: removed), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
-IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
-FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
+IMAGE_COMMAND = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
+FILM_COMMAND = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
 ENVIRONMENTS = {
-    "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE, 0),
-    "home is nowhere": ({"HOME": "/proc/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
-    "wrong language": ({"LC_ALL": "xx_YY.nothing"}, IMAGE, 0),
-    "no film program": ({"IMAGEIO_FFMPEG_EXE": "/nowhere/ffmpeg"}, FILM, 2),
-    "no OpenGL": ({"GLCONTEXT_LINUX_LIBEGL": "nothing.so"}, IMAGE, 2),
+    "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE_COMMAND, 0),
+    "home is nowhere": ({"HOME": "/proc/nowhere", "XDG_CACHE_HOME": None}, IMAGE_COMMAND, 0),
+    "wrong language": ({"LC_ALL": "xx_YY.nothing"}, IMAGE_COMMAND, 0),
+    "no film program": ({"IMAGEIO_FFMPEG_EXE": "/nowhere/ffmpeg"}, FILM_COMMAND, 2),
+    "no OpenGL": ({"GLCONTEXT_LINUX_LIBEGL": "nothing.so"}, IMAGE_COMMAND, 2),
     "no screen": ({"DISPLAY": None, "WAYLAND_DISPLAY": None}, "view", 2),
     "settings in a file": ({"XDG_CONFIG_HOME": "notes.txt", "DISPLAY": None}, "view", 2),
     "compiler is switched off": ({"NUMBA_DISABLE_JIT": "1"}, "doctor --offscreen", 0),
@@ -49,13 +49,13 @@ def test_places_of_settings(folder, sandbox, monkeypatch):
 def start(words, folder, environment, limit=None):
     """Run the command in a separate process."""
     process = subprocess.run(
-        [sys.executable, "-c", COMMAND, *shlex.split(words)],
+        [sys.executable, "-c", COMMAND_PROGRAM, *shlex.split(words)],
         cwd=folder,
         env={"PYTHONPATH": str(ROOT), **environment},
         capture_output=True,
         text=True,
         errors="surrogateescape",
-        timeout=STARTING,
+        timeout=STARTING_LIMIT,
         check=False,
         stdin=subprocess.DEVNULL,
         preexec_fn=limit,
@@ -89,12 +89,12 @@ def _limit(kind, most):
 @pytest.mark.parametrize(
     ("words", "kind", "most", "code"),
     [
-        (IMAGE, resource.RLIMIT_FSIZE, 10, 2),
-        (FILM, resource.RLIMIT_FSIZE, 100, 2),
-        (IMAGE.replace("x.png", "frames"), resource.RLIMIT_FSIZE, 10, 2),
+        (IMAGE_COMMAND, resource.RLIMIT_FSIZE, 10, 2),
+        (FILM_COMMAND, resource.RLIMIT_FSIZE, 100, 2),
+        (IMAGE_COMMAND.replace("x.png", "frames"), resource.RLIMIT_FSIZE, 10, 2),
         ("reproduce figure9 -o .", resource.RLIMIT_FSIZE, 1000, 2),
-        (IMAGE, resource.RLIMIT_NOFILE, 8, 0),
-        (IMAGE.replace("16x16", "8000x8000"), resource.RLIMIT_AS, 2 << 30, 2),
+        (IMAGE_COMMAND, resource.RLIMIT_NOFILE, 8, 0),
+        (IMAGE_COMMAND.replace("16x16", "8000x8000"), resource.RLIMIT_AS, 2 << 30, 2),
     ],
     ids=["png", "mp4", "frames", "figure", "files", "memory"],
 )
@@ -114,7 +114,8 @@ STREAMS = {
     "out closed": "{risorius} controls >&-",
     "all closed": "{risorius} controls <&- >&- 2>&-",
     "nobody reads on": "{risorius} controls | head -n 1",
-    "folder is gone, picture": "mkdir gone && cd gone && rmdir ../gone && {risorius} " + IMAGE,
+    "folder is gone, picture": "mkdir gone && cd gone && rmdir ../gone && {risorius} "
+    + IMAGE_COMMAND,
 }
 
 
@@ -129,7 +130,7 @@ def test_streams_of_the_shell(name, sandbox):
         env=surroundings(PYTHONPATH=str(ROOT)),
         capture_output=True,
         text=True,
-        timeout=STARTING,
+        timeout=STARTING_LIMIT,
         check=False,
     )
     assert "Traceback" not in process.stderr

@@ -11,7 +11,7 @@ from tests import meshes
 @pytest.mark.parametrize("name", ["triangle", "octahedron", "open_grid", "with_debris"])
 def test_equals_brute_force(name):
     """No point of a dense sampling of the mesh is closer, and the found point is on the mesh."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     generator = np.random.default_rng(3)
     points = generator.uniform(-2.0, 4.0, (100, 3))
     found = closest_points(points, mesh.vertices, mesh.faces)

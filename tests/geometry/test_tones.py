@@ -5,13 +5,13 @@ import pytest
 
 from risorius.geometry.tones import Absorbed, Grown, Hairs, absorb, compose
 
-SHAPE = 4, 37
-MOST = np.float32(0.99)
+IMAGE_SHAPE = 4, 37
+LARGEST_TONE = np.float32(0.99)
 
 
 def in_whole_arrays(absorbed, light, skin, former, hairs, grown, table):
     """The picture, computed by numpy on whole maps."""
-    picture = np.empty((*SHAPE, 3), np.uint8)
+    picture = np.empty((*IMAGE_SHAPE, 3), np.uint8)
     on_scalp = hairs.scalp > 0.01
     grey = np.where(on_scalp, *hairs.grey)
     haired = hairs.kept
@@ -48,18 +48,18 @@ def test_same_bits_as_whole_arrays(is_grown):
         return random.uniform(low, high, shape).astype(np.float32)
 
     amounts = tuple(drawn(3, low=-0.5, high=2.0) for _ in range(4))
-    maps = tuple(drawn(*SHAPE) for _ in range(4))
-    absorbed = Absorbed(amounts, maps, np.float32(0.7), drawn(*SHAPE, low=-0.3, high=0.3))
-    scalp = drawn(*SHAPE) * (random.random(SHAPE) < 0.5).astype(np.float32)
-    hairs = Hairs(drawn(3), drawn(2), drawn(3), drawn(*SHAPE), scalp)
-    covered = drawn(*SHAPE) if is_grown else np.zeros((0, SHAPE[1]), np.float32)
-    grown = Grown(covered, drawn(*SHAPE, low=-1.4, high=1.4), MOST, np.float32(0.5))
-    light = drawn(3, *SHAPE, low=-0.2, high=1.6)
+    maps = tuple(drawn(*IMAGE_SHAPE) for _ in range(4))
+    absorbed = Absorbed(amounts, maps, np.float32(0.7), drawn(*IMAGE_SHAPE, low=-0.3, high=0.3))
+    scalp = drawn(*IMAGE_SHAPE) * (random.random(IMAGE_SHAPE) < 0.5).astype(np.float32)
+    hairs = Hairs(drawn(3), drawn(2), drawn(3), drawn(*IMAGE_SHAPE), scalp)
+    covered = drawn(*IMAGE_SHAPE) if is_grown else np.zeros((0, IMAGE_SHAPE[1]), np.float32)
+    grown = Grown(covered, drawn(*IMAGE_SHAPE, low=-1.4, high=1.4), LARGEST_TONE, np.float32(0.5))
+    light = drawn(3, *IMAGE_SHAPE, low=-0.2, high=1.6)
     skin = drawn(3)
-    former = drawn(*SHAPE)
+    former = drawn(*IMAGE_SHAPE)
     table = random.integers(0, 256, 4096, np.uint8)
-    picture = np.zeros((*SHAPE, 3), np.uint8)
-    left = np.empty((3, 2, SHAPE[1]), np.float32)
+    picture = np.zeros((*IMAGE_SHAPE, 3), np.uint8)
+    left = np.empty((3, 2, IMAGE_SHAPE[1]), np.float32)
     for first in (0, 2):
         absorb(absorbed, first, left)
         np.exp(left, out=left)

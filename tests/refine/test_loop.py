@@ -65,10 +65,10 @@ def assert_is_plain(mesh, deformed, levels):
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
-@pytest.mark.parametrize("name", meshes.NAMED)
+@pytest.mark.parametrize("name", meshes.NAMED_MESHES)
 def test_named_meshes(name, levels):
     """Every test mesh, deformed, is subdivided as by the simple implementation."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     assert_is_plain(mesh, meshes.wrinkled(mesh, 3), levels)
 
 

@@ -21,7 +21,7 @@ MESHES = st.one_of(
     st.builds(meshes.irregular, st.integers(0, 99), st.just(4), st.just(3), st.integers(0, 2)).map(
         lambda m: (m.vertices, m.faces)
     ),
-    st.sampled_from([make() for make in meshes.NAMED.values()]).map(
+    st.sampled_from([make() for make in meshes.NAMED_MESHES.values()]).map(
         lambda m: (m.vertices, m.faces)
     ),
 )

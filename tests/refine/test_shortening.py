@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from risorius import refine
 from tests import meshes
 
-ALONG = (1.0, 0.0, 0.0)
-ACROSS = (0.0, 1.0, 0.0)
+ALONG_AXIS = (1.0, 0.0, 0.0)
+ACROSS_AXIS = (0.0, 1.0, 0.0)
 
 
 def grid(count=9):
@@ -20,7 +20,7 @@ def grid(count=9):
 
 def both_ways(count):
     """Directions along x and along y, at every vertex."""
-    return np.tile([ALONG, ACROSS], (count, 1, 1))
+    return np.tile([ALONG_AXIS, ACROSS_AXIS], (count, 1, 1))
 
 
 def test_at_rest_there_is_none():

@@ -27,13 +27,13 @@ def doubled(mesh, seed):
 
 @settings(max_examples=50)
 @given(
-    name=st.sampled_from(sorted(meshes.NAMED)),
+    name=st.sampled_from(sorted(meshes.NAMED_MESHES)),
     seed=st.integers(0, 2**16),
     options=st.sampled_from([{}, {"blend": False}, {"scheme": "loop", "criterion": "normal"}]),
 )
 def test_carried_as_if_bound(name, seed, options):
     """`carry` gives the same values as a refiner with these values bound at every corner."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     points, faces = doubled(mesh, seed)
     values = np.random.default_rng(seed).random((len(points), 2))
     welded = refine.WeldedRefiner(points, faces, **options)
@@ -257,15 +257,15 @@ def test_places_are_those_of_all_pairs(seed, distance):
     assert_array_equal(numbers[:, None] == numbers, near)
 
 
-WIDE = (2**53, 2**53 + 1, 2**62 + 3)
+WIDE_INDICES = (2**53, 2**53 + 1, 2**62 + 3)
 
 
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize(
     "values",
     [
-        np.array(WIDE, np.int64),
-        -np.array(WIDE, np.int64),
+        np.array(WIDE_INDICES, np.int64),
+        -np.array(WIDE_INDICES, np.int64),
         np.array([2**64 - 1, 2**64 - 3, 1], np.uint64),
         np.array([-(2**63), 2**63 - 1, 0], np.int64),
         np.array([[7, 2**60 + 1], [9, 2**60 + 1], [5, 2**60 + 1]], ">i8"),

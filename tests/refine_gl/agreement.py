@@ -19,14 +19,14 @@ from risorius.refine_gl import KahlerGl
 from risorius.refine_gl.context import GpuError, own_context
 
 Points = npt.NDArray[np.float64]
-LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
+LOOK_OPTIONS: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
 RULES: dict[str, dict[str, Any]] = {
     "one level": {"threshold_twice": np.inf},
     "two levels": {},
-    "window's look": LOOK,
+    "window's look": LOOK_OPTIONS,
 }
 
-ROUNDING = """#version 430 core
+ROUNDING_SHADER = """#version 430 core
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Numbers { float numbers[]; };
 void main() {
@@ -68,7 +68,7 @@ def rounds_as_processors(gl: moderngl.Context) -> bool:
     numbers = np.random.default_rng(1).uniform(0.5, 2.0, (64 * 64, 4)).astype(np.float32)
     buffer = gl.buffer(numbers.tobytes())
     buffer.bind_to_storage_buffer(0)
-    gl.compute_shader(ROUNDING).run(len(numbers) // 64)
+    gl.compute_shader(ROUNDING_SHADER).run(len(numbers) // 64)
     gl.memory_barrier()
     found = np.frombuffer(buffer.read(), np.float32).reshape(-1, 4)
     roots = np.float32(1.0) / np.sqrt(numbers[:, 0])

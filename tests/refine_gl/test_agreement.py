@@ -14,12 +14,12 @@ from risorius.refine_gl import KahlerGl
 from tests import meshes
 from tests.refine.cases import edge_count_of
 
-from .agreement import LOOK, RULES, Points, assert_same, bound_twice
+from .agreement import LOOK_OPTIONS, RULES, Points, assert_same, bound_twice
 
 POSES = ("rest", "joy", "anger", "yawn", "kiss")
 VIEW = refine.View((3.0, 2.0, 20.0))
-FAR = np.array([700.0, -300.0, 900.0])
-QUICK = ("joy", "kiss far away")
+FAR_OFFSET = np.array([700.0, -300.0, 900.0])
+QUICK_POSES = ("joy", "kiss far away")
 both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
 
 
@@ -35,7 +35,7 @@ def poses(head: Head) -> dict[str, Points]:
         for _ in range(60):
             face.step(1 / 60)
         found[name] = face.positions.copy()
-    found["kiss far away"] = found["kiss"] @ meshes.rotation(3).T + FAR
+    found["kiss far away"] = found["kiss"] @ meshes.rotation(3).T + FAR_OFFSET
     return found
 
 
@@ -54,7 +54,7 @@ def with_seam(head):
 @pytest.mark.parametrize(
     "pose",
     [
-        name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+        name if name in QUICK_POSES else pytest.param(name, marks=pytest.mark.slow)
         for name in (*POSES, "kiss far away")
     ],
 )
@@ -84,10 +84,10 @@ def test_splits_that_stay(scheme):
 
 
 @both_rules
-@pytest.mark.parametrize("name", meshes.NAMED)
+@pytest.mark.parametrize("name", meshes.NAMED_MESHES)
 def test_small_meshes(name, rules):
     """Three frames of each test mesh: borders, fins, flips, doubles, debris."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
     for seed, amplitude in ((0, 0.0), (1, 0.5), (2, 0.2)):
         positions = meshes.wrinkled(mesh, seed, amplitude)
@@ -172,7 +172,7 @@ def random_mesh(seed):
     if seed % 7 == 0:
         options["coherent"] = True
     elif seed % 2 == seed // 2 % 2:
-        options |= LOOK | {"blend": None if seed % 3 else False}
+        options |= LOOK_OPTIONS | {"blend": None if seed % 3 else False}
     return mesh, options
 
 

@@ -23,14 +23,14 @@ from .agreement import needs_exact_driver
 
 pytestmark = needs_exact_driver
 SIZE = (200, 240)
-PLAIN = render.Style(textured=False, bumps=0.0)
+PLAIN_STYLE = render.Style(textured=False, bumps=0.0)
 STYLES = {
     "skin": render.Style(bumps=0.0),
     "wrinkles": render.Style(),
-    "flat": replace(PLAIN, shading=render.Shading.FLAT),
-    "wireframe": replace(PLAIN, wireframe=True),
-    "splits": replace(PLAIN, colour_by=render.ColourBy.SPLITS),
-    "translucent": replace(PLAIN, opacity=0.6),
+    "flat": replace(PLAIN_STYLE, shading=render.Shading.FLAT),
+    "wireframe": replace(PLAIN_STYLE, wireframe=True),
+    "splits": replace(PLAIN_STYLE, colour_by=render.ColourBy.SPLITS),
+    "translucent": replace(PLAIN_STYLE, opacity=0.6),
 }
 
 
@@ -118,7 +118,7 @@ def test_nothing_is_downloaded(scene, monkeypatch):
     with render.open_offscreen(SIZE, samples=4) as surface:
         pipeline = Pipeline(scene, render.Renderer(surface))
         _, card = both(pipeline)
-        image(pipeline, card, PLAIN)
+        image(pipeline, card, PLAIN_STYLE)
         assert not {"_counts", "vertices", "triangles", "source"} & set(vars(card.mesh))
         assert card.refiner._fetched_splits is None
 
@@ -166,7 +166,7 @@ def test_a_window_that_is_resized(scene, look):
         processor, card = both(pipeline, look)
         for size in ((200, 150), (320, 200), (100, 240)):
             resize(window, size)
-            wanted, got = (image(pipeline, each, PLAIN) for each in (processor, card))
+            wanted, got = (image(pipeline, each, PLAIN_STYLE) for each in (processor, card))
             assert got.shape[:2] == size[::-1]
             assert np.array_equal(wanted, got)
 

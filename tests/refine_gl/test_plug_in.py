@@ -20,7 +20,7 @@ from tests import meshes
 from .agreement import RULES, assert_same, bits, bound_twice
 
 MESH = meshes.irregular(1, columns=6, rows=5, holes=1)
-BENT = meshes.wrinkled(MESH, 3, 0.5)
+BENT_POSITIONS = meshes.wrinkled(MESH, 3, 0.5)
 
 
 def bound(**options):
@@ -45,12 +45,15 @@ def test_it_is_found_by_an_entry_point():
 def test_wrong_frames_are_refused():
     """Wrong frames are refused as by `kahler`, and the next good frame is correct."""
     processor, card = bound()
-    for wrong, words in ((BENT[1:], "must be floats of shape"), (BENT * np.nan, "must be finite")):
+    for wrong, words in (
+        (BENT_POSITIONS[1:], "must be floats of shape"),
+        (BENT_POSITIONS * np.nan, "must be finite"),
+    ):
         with pytest.raises(ValueError, match=words):
             card.refine(wrong)
         with pytest.raises(ValueError, match=words):
             card.refine(wrong, out=lent(card))
-    assert_same(processor, card, BENT)
+    assert_same(processor, card, BENT_POSITIONS)
 
 
 def lent(card):
@@ -66,14 +69,14 @@ def test_lent_arrays_are_filled():
     """A frame is written into the lent arrays."""
     processor, card = bound()
     stream = lent(card)
-    wanted = processor.refine(BENT)
-    mesh = card.refine(BENT, out=stream)
+    wanted = processor.refine(BENT_POSITIONS)
+    mesh = card.refine(BENT_POSITIONS, out=stream)
     assert np.shares_memory(mesh.positions, stream.vertices)
     assert_array_equal(bits(mesh.positions), bits(wanted.positions))
     assert_array_equal(mesh.triangles, wanted.triangles)
     assert_array_equal(mesh.source, wanted.source)
     with pytest.raises(ValueError, match=re.escape("stream.triangles must be a writable")):
-        card.refine(BENT, out=SimpleNamespace(**{**vars(stream), "triangles": None}))
+        card.refine(BENT_POSITIONS, out=SimpleNamespace(**{**vars(stream), "triangles": None}))
 
 
 @pytest.fixture
@@ -88,13 +91,13 @@ def test_buffers_of_another_context(surface):
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     stream = GpuBuffers(surface.gl, *room)
-    mesh = card.refine_on_card(BENT, stream)
-    wanted = processor.refine(BENT)
+    mesh = card.refine_on_card(BENT_POSITIONS, stream)
+    wanted = processor.refine(BENT_POSITIONS)
     assert not {"vertices", "triangles", "source", "_counts"} & set(vars(mesh))
     assert mesh.triangle_count == wanted.triangle_count
     assert "vertices" not in vars(mesh)
     assert_array_equal(bits(mesh.positions), bits(wanted.positions))
-    refine.check(card, mesh, BENT)
+    refine.check(card, mesh, BENT_POSITIONS)
     command = np.frombuffer(stream.command_buffer.read(), np.uint32)
     assert command.tolist() == [
         *(3 * wanted.triangle_count, 1, 0, 0, 0),
@@ -106,13 +109,13 @@ def test_buffers_of_another_context(surface):
 def test_a_new_context_gets_the_mesh_again(rules):
     """After the buffers are lost with a closed window, the next context gets the mesh again."""
     processor, card = bound(**RULES[rules])
-    wanted = processor.refine(BENT)
+    wanted = processor.refine(BENT_POSITIONS)
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     for size in ((32, 32), (64, 48)):
         with render.open_offscreen(size) as surface:
-            mesh = card.refine_on_card(BENT, GpuBuffers(surface.gl, *room))
+            mesh = card.refine_on_card(BENT_POSITIONS, GpuBuffers(surface.gl, *room))
             assert_array_equal(bits(mesh.positions), bits(wanted.positions))
-    assert_same(processor, card, BENT)
+    assert_same(processor, card, BENT_POSITIONS)
 
 
 def test_the_callers_context_stays_current(surface):
@@ -121,7 +124,7 @@ def test_the_callers_context_stays_current(surface):
     surface.begin()
     surface.gl.clear(1.0, 0.0, 0.0)
     surface.end()
-    card.refine(BENT).positions.copy()
+    card.refine(BENT_POSITIONS).positions.copy()
     assert surface.read()[0, 0].tolist() == [255, 0, 0]
 
 
@@ -148,8 +151,10 @@ def test_without_opengl_the_processor_refines(caplog):
         "(kahler)"
     ]
     assert type(other) is refine.Kahler
-    wanted = refine.create("kahler", MESH.faces, MESH.vertices, threshold_once=0.01).refine(BENT)
-    assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
+    wanted = refine.create("kahler", MESH.faces, MESH.vertices, threshold_once=0.01).refine(
+        BENT_POSITIONS
+    )
+    assert_array_equal(other.refine(BENT_POSITIONS).triangles, wanted.triangles)
 
 
 def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):

@@ -14,14 +14,14 @@ from tests.meshes import ball
 
 SignedImage = npt.NDArray[np.int32]  # differences of images, (H, W, 3)
 
-PLAIN = render.Style(background=render.WHITE, shadows=False)
+PLAIN_STYLE = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so all other pixels are drawn ones."""
 
 LIGHT_SKIN = (0.88, 0.75, 0.685)
 DARK_SKIN = (0.47, 0.325, 0.255)
 """Albedos."""
 
-STILL = {"cranium": np.eye(4), "eye_left": np.eye(4)}
+STILL_TRANSFORMS = {"cranium": np.eye(4), "eye_left": np.eye(4)}
 """Bones at rest."""
 
 
@@ -81,7 +81,7 @@ def facing(half: float = 50.0) -> render.OrbitCamera:
 def draw(
     renderer: render.Renderer,
     skin: render.Skin | render.Stream | None = None,
-    style: render.Style = PLAIN,
+    style: render.Style = PLAIN_STYLE,
     *,
     parts: Sequence[render.PlacedPart] = (),
     lines: Sequence[render.Lines] = (),
@@ -96,13 +96,13 @@ def draw(
 
 def still(*parts: Any) -> list[render.PlacedPart]:
     """The parts, placed by bones at rest."""
-    return [render.PlacedPart.on_bone(part, STILL) for part in parts]
+    return [render.PlacedPart.on_bone(part, STILL_TRANSFORMS) for part in parts]
 
 
 def draw_image(
     surface: render.Surface,
     shape: Shape,
-    style: render.Style = PLAIN,
+    style: render.Style = PLAIN_STYLE,
     *,
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,

@@ -7,13 +7,13 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, at, draw, lent, sphere, square
+from .scenes import PLAIN_STYLE, at, draw, lent, sphere, square
 
 LEVEL = (128, 128, 0, 0)  # no slope
-STEEP = 100.0  # a slope of 1 over a square of 100 mm
+STEEP_BUMPS = 100.0  # a slope of 1 over a square of 100 mm
 
 
-def furrowed(surface, texel, amounts, style=PLAIN, *, left=LEVEL, corner=(1.0, 0.0)):
+def furrowed(surface, texel, amounts, style=PLAIN_STYLE, *, left=LEVEL, corner=(1.0, 0.0)):
     """The picture of a square whose map has `texel` in its right half, with bumps by `amounts`.
 
     left: the texel of the left half. corner: the texture coordinates of the lower right vertex.
@@ -29,7 +29,7 @@ def furrowed(surface, texel, amounts, style=PLAIN, *, left=LEVEL, corner=(1.0, 0
     stream.vertices[:, 8:10] = amounts if has_bumps else 1.0
     stream.vertices[:, 10:] = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0)  # u and v grow by 1 over 100 mm
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=has_bumps)
-    bumps = render.BumpMap(renderer.surface, texels, STEEP)
+    bumps = render.BumpMap(renderer.surface, texels, STEEP_BUMPS)
     return draw(renderer, render.Skin(stream, render.SkinMaps(bumps=bumps)), style)
 
 
@@ -74,8 +74,8 @@ def test_a_texel_follows_its_own_amount(surface):
 @pytest.mark.parametrize("amounts", [None, (0.0, 0.0), (1.0, 1.0)])
 def test_none_without_amounts_or_strength(surface, amounts):
     """A style without bumps and a skin without amounts give the same bytes."""
-    smooth = replace(PLAIN, bumps=0.0)
-    style = smooth if amounts == (1.0, 1.0) else PLAIN
+    smooth = replace(PLAIN_STYLE, bumps=0.0)
+    style = smooth if amounts == (1.0, 1.0) else PLAIN_STYLE
     texel = (190, 90, 200, 128)
     assert (furrowed(surface, texel, amounts, style) == furrowed(surface, texel, None)).all()
 
@@ -83,7 +83,7 @@ def test_none_without_amounts_or_strength(surface, amounts):
 @pytest.mark.parametrize("shading", [render.Shading.FLAT, render.Shading.GOURAUD])
 def test_per_pixel_shading_alone_has_them(surface, shading):
     """Only per-pixel shading shows bumps, because others have no normal for each pixel."""
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     texel = (190, 90, 200, 128)
     furrows = furrowed(surface, texel, (1.0, 1.0), style)
     assert (furrows == furrowed(surface, texel, None, style)).all()
@@ -93,7 +93,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
     """With a level map, bumps on one half of a sphere change nothing, also along the border."""
     shape = sphere()
     stream = lent(renderer, shape, columns=16)
-    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP_BUMPS)
     frames = []
     for share in (0.0, 0.5):
         stream.vertices[: int(share * len(shape.positions)), 8:10] = 1.0
@@ -105,12 +105,12 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(renderer):
 def test_what_does_not_fit_is_refused(renderer):
     """An invalid map, a stream without amounts, and one without texture coordinates are refused."""
     with pytest.raises(ValueError, match="the bump map has shape"):
-        render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
+        render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP_BUMPS)
     shape = square()
     stream = lent(renderer, shape)
     with pytest.raises(ValueError, match=r"bumps on a stream of 6 columns.* lend a stream of 16"):
         stream.upload(4, 2, has_bumps=True)
-    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP_BUMPS)
     with pytest.raises(ValueError, match="8 columns"):
         render.Skin(stream, render.SkinMaps(bumps=level))
 

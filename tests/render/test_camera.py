@@ -6,7 +6,11 @@ from pytest import approx
 
 from risorius import render
 
-HEAD = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (3.0, -20.0, 60.0)
+HEAD_POINTS = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (
+    3.0,
+    -20.0,
+    60.0,
+)
 
 
 def seen(camera, points, aspect=1.5):
@@ -20,15 +24,17 @@ def seen(camera, points, aspect=1.5):
 @pytest.mark.parametrize("aspect", [0.4, 1.0, 16 / 9])
 def test_framing_fits_everything(view, aspect):
     """All vertices are in the frame, between the clipping planes, and touch the margin."""
-    camera = render.OrbitCamera.framing(HEAD, view=view)
-    places = seen(camera, HEAD, aspect)
+    camera = render.OrbitCamera.framing(HEAD_POINTS, view=view)
+    places = seen(camera, HEAD_POINTS, aspect)
     assert np.abs(places).max() <= 1.0
     assert np.abs(places[:, :2]).max() == approx(0.88, abs=0.03)
 
 
 def test_views_have_their_direction():
     """Front is seen from +z, the profile from the subject's left (+x), below from -y."""
-    eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
+    eyes = {
+        view: render.OrbitCamera.framing(HEAD_POINTS, view=view).axes()[2] for view in render.VIEWS
+    }
     assert eyes["front"] == approx((0, 0, 1))
     assert eyes["profile"] == approx((1, 0, 0))
     assert eyes["three-quarter"][0] > 0.4
@@ -39,7 +45,7 @@ def test_views_have_their_direction():
 
 def test_orbit_stops_at_the_poles():
     """However high the camera orbits, up stays up."""
-    camera = render.OrbitCamera.framing(HEAD)
+    camera = render.OrbitCamera.framing(HEAD_POINTS)
     camera.orbit(0.0, 500.0)
     assert camera.pitch < 90.0
     assert camera.axes()[1][1] > 0.0
@@ -48,7 +54,7 @@ def test_orbit_stops_at_the_poles():
 
 def test_zoom_has_an_end_on_both_sides():
     """After any zoom the eye is outside the target, and the target is still visible."""
-    camera = render.OrbitCamera.framing(HEAD)
+    camera = render.OrbitCamera.framing(HEAD_POINTS)
     camera.zoom(1e30)
     assert camera.distance == approx(0.02 * camera.scene_radius)
     camera.zoom(1e-30)
@@ -57,11 +63,11 @@ def test_zoom_has_an_end_on_both_sides():
 
 def test_clipping_planes_hold_the_scene_from_anywhere():
     """From every side and distance, the scene's visible half is between the clipping planes."""
-    camera = render.OrbitCamera.framing(HEAD)
+    camera = render.OrbitCamera.framing(HEAD_POINTS)
     for zoom in (0.2, 1.0, 1.0, 1.5):
         camera.zoom(zoom)
         camera.orbit(47.0, 19.0)
-        depth = seen(camera, HEAD)[:, 2]
+        depth = seen(camera, HEAD_POINTS)[:, 2]
         assert -1.0 <= depth.min()
         assert depth.max() <= 1.0
 
@@ -69,7 +75,7 @@ def test_clipping_planes_hold_the_scene_from_anywhere():
 @pytest.mark.parametrize(
     ("vertices", "view", "message"),
     [
-        (HEAD, "behind", "view is 'behind'; it must be one of front, three-quarter"),
+        (HEAD_POINTS, "behind", "view is 'behind'; it must be one of front, three-quarter"),
         (np.zeros((0, 3)), "front", r"vertices has shape \(0, 3\); it must be \(n, 3\)"),
         (np.zeros((4, 2)), "front", r"vertices has shape \(4, 2\)"),
         (np.full((4, 3), np.nan), "front", "vertices holds numbers that are not finite"),
@@ -85,13 +91,13 @@ def test_framing_errors(vertices, view, message):
 def test_a_projected_point_is_found_again(seed):
     """A point, projected and unprojected, is unchanged, and its ray starts at the eye."""
     random = np.random.default_rng(seed)
-    camera = render.OrbitCamera.framing(HEAD, view=random.choice(list(render.VIEWS)))
+    camera = render.OrbitCamera.framing(HEAD_POINTS, view=random.choice(list(render.VIEWS)))
     camera.orbit(*random.uniform(-60.0, 60.0, 2))
     camera.zoom(random.uniform(0.5, 3.0))
     camera.pan(*random.uniform(-0.2, 0.2, 2))
     aspect = random.uniform(0.4, 2.5)
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(aspect))
-    points = HEAD[random.integers(len(HEAD), size=20)]
+    points = HEAD_POINTS[random.integers(len(HEAD_POINTS), size=20)]
     places = seen(camera, points, aspect)
     back = np.column_stack([places, np.ones(20)]) @ np.linalg.inv(matrix)
     assert back[:, :3] / back[:, 3:] == approx(points, abs=1e-6)
@@ -101,7 +107,7 @@ def test_a_projected_point_is_found_again(seed):
 
 def test_another_lens_keeps_the_target_as_large():
     """A wide lens moves the camera nearer; an impossible one is refused."""
-    camera = render.OrbitCamera.framing(HEAD)
+    camera = render.OrbitCamera.framing(HEAD_POINTS)
     above = camera.target + np.array([0.0, 0.1, 0.0])
     before = seen(camera, above[None], 1.0)[0, 1]
     far = camera.distance

@@ -7,15 +7,15 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, at, draw_image, sphere, square
+from .scenes import PLAIN_STYLE, at, draw_image, sphere, square
 
-SPLITS = replace(PLAIN, colour_by=render.ColourBy.SPLITS)
+SPLITS_STYLE = replace(PLAIN_STYLE, colour_by=render.ColourBy.SPLITS)
 
 
 def test_wireframe_darkens_edges_only(surface):
     """Lines appear along borders and the diagonal; between them the surface is unchanged."""
     plain = draw_image(surface, square())
-    wired = draw_image(surface, square(), replace(PLAIN, wireframe=True, wire_width=3.0))
+    wired = draw_image(surface, square(), replace(PLAIN_STYLE, wireframe=True, wire_width=3.0))
     assert at(wired, 0.0, 0.0).sum() < 0.8 * at(plain, 0.0, 0.0).sum()
     assert at(wired, 49.5, 0.0).sum() < 0.9 * at(plain, 49.5, 0.0).sum()
     assert (at(wired, 20.0, -20.0) == at(plain, 20.0, -20.0)).all()
@@ -27,7 +27,7 @@ def test_wireframe_darkens_edges_only(surface):
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_split_colours_are_where_the_values_say(surface, shading, wireframe):
     """A split triangle has the hue of its palette entry, its unsplit neighbour that of skin."""
-    style = replace(SPLITS, shading=shading, wireframe=wireframe)
+    style = replace(SPLITS_STYLE, shading=shading, wireframe=wireframe)
     frame = draw_image(surface, square(), style, values=np.array([0, 4], np.uint8))
     lower = at(frame, 20.0, -20.0)
     upper = at(frame, -20.0, 20.0)
@@ -42,7 +42,7 @@ def test_split_wires_outline_split_triangles_alone(surface):
 
     Their insides, and unsplit triangles, are unchanged.
     """
-    wires = replace(PLAIN, colour_by=render.ColourBy.SPLIT_WIRES, wire_width=3.0)
+    wires = replace(PLAIN_STYLE, colour_by=render.ColourBy.SPLIT_WIRES, wire_width=3.0)
     plain = draw_image(surface, square())
     whole = draw_image(surface, square(), wires, values=np.array([0, 0], np.uint8))
     split = draw_image(surface, square(), wires, values=np.array([0, 4], np.uint8))
@@ -60,7 +60,7 @@ def test_split_colours_of_many_triangles(surface):
     centres = shape.positions[shape.triangles].mean(axis=1)
     values = np.where(centres[:, 1] > 0.0, 5, 0).astype(np.uint8)
     assert len(values) > 2 * 1024
-    frame = draw_image(surface, shape, SPLITS, values=values)
+    frame = draw_image(surface, shape, SPLITS_STYLE, values=values)
     upper = frame[30, 30:66]
     lower = frame[66, 30:66]
     assert (upper[:, 2] > upper[:, 0]).all()
@@ -77,6 +77,6 @@ def test_palette_darkens_with_the_number_of_splits():
 def test_split_values_must_be_there(surface):
     """Missing numbers of splits, and a wrong count of them, are refused."""
     with pytest.raises(ValueError, match="the style colours by values, so the skin needs values"):
-        draw_image(surface, square(), SPLITS)
+        draw_image(surface, square(), SPLITS_STYLE)
     with pytest.raises(ValueError, match="could not broadcast"):
-        draw_image(surface, square(), SPLITS, values=np.zeros(3, np.uint8))
+        draw_image(surface, square(), SPLITS_STYLE, values=np.zeros(3, np.uint8))

@@ -10,11 +10,11 @@ import pytest
 from risorius import render
 from risorius.render.render_target import RenderTarget
 
-from .scenes import PLAIN, STILL, Ball, facing, joined, lent, sphere, square, still
+from .scenes import PLAIN_STYLE, STILL_TRANSFORMS, Ball, facing, joined, lent, sphere, square, still
 from .test_shadows import HairyBall
 
-HALF = (0, 0, 40, 96)
-FURROWED = (190, 90, 200, 128)
+HALF_RECTANGLE = (0, 0, 40, 96)
+FURROWED_RECTANGLE = (190, 90, 200, 128)
 
 
 @pytest.fixture(params=[0, 4])
@@ -31,10 +31,12 @@ def frames_of(renderer):
     stream.vertices[:, 8:] = 1.0
     stream.vertices[:, 16] = 0.02 * shape.positions[:, 1] + 0.5
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
-    bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), FURROWED, np.uint8), 100.0)
+    bumps = render.BumpMap(
+        renderer.surface, np.full((8, 8, 4), FURROWED_RECTANGLE, np.uint8), 100.0
+    )
     texture = render.Texture(renderer.surface, np.full((8, 8, 3), (200, 90, 30), np.uint8))
     values = np.arange(len(shape.triangles), dtype=np.uint8) % 7
-    shaded = replace(PLAIN, shadows=True)
+    shaded = replace(PLAIN_STYLE, shadows=True)
     tinted = replace(shaded, colour_by=render.ColourBy.SPLITS, background=render.DARK)
     turned = facing()
     turned.orbit(30.0, 10.0)
@@ -43,7 +45,9 @@ def frames_of(renderer):
     away = np.eye(4)
     away[:3, 3] = (30.0, 20.0, 10.0)
     hair = render.PlacedPart.on_bone(HairyBall(), {"cranium": away}, throws_shadow=True)
-    bone = render.PlacedPart.on_bone(Ball(), STILL, lies_beneath=True, throws_shadow=True)
+    bone = render.PlacedPart.on_bone(
+        Ball(), STILL_TRANSFORMS, lies_beneath=True, throws_shadow=True
+    )
     bare = render.Skin(stream)
     return [
         render.Frame(front, shaded, bare, [hair, *still(Ball(bone="eye_left"))]),
@@ -51,7 +55,9 @@ def frames_of(renderer):
         render.Frame(aside, shaded, render.Skin(stream, render.SkinMaps(texture, bumps))),
         render.Frame(front, tinted, render.Skin(stream, values=values), still(Ball())),
         render.Frame(front, shaded, render.Skin(stream, fading=shape.positions.astype(np.float64))),
-        render.Frame(render.CameraView(turned, HALF, (10, 10, 20, 60)), PLAIN, None, [hair]),
+        render.Frame(
+            render.CameraView(turned, HALF_RECTANGLE, (10, 10, 20, 60)), PLAIN_STYLE, None, [hair]
+        ),
     ]
 
 
@@ -75,7 +81,7 @@ def test_no_order_of_pictures_matters(renderer):
 
 def test_frames_of_one_picture_are_apart(renderer):
     """Two halves drawn by one call have the same pixels as each half drawn alone."""
-    style = replace(PLAIN, shadows=True)
+    style = replace(PLAIN_STYLE, shadows=True)
     skin = render.Skin(lent(renderer, sphere(2, 30.0)))
     halves = [(0, 0, 48, 96), (48, 0, 48, 96)]
     cameras = [facing(), facing()]
@@ -106,12 +112,12 @@ def test_a_frame_keeps_camera_and_shapes(renderer):
     ball = Ball()
     camera = facing()
     moving = Moving(ball)
-    frame = render.Frame(render.CameraView(camera), PLAIN, None, still(moving))
+    frame = render.Frame(render.CameraView(camera), PLAIN_STYLE, None, still(moving))
     before = picture(renderer, frame)
     camera.orbit(30.0)
     camera.zoom(2.0)
     moving.vertices = (0.5 * ball.vertices).astype(np.float32)
-    later = render.Frame(render.CameraView(camera), PLAIN, None, still(moving))
+    later = render.Frame(render.CameraView(camera), PLAIN_STYLE, None, still(moving))
     assert not np.array_equal(picture(renderer, later), before)
     assert np.array_equal(picture(renderer, frame), before)
 
@@ -135,7 +141,7 @@ class Moving(Ball):
 def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
     """A frame is refused after its stream was filled with another mesh."""
     stream = lent(renderer, sphere())
-    frame = render.Frame(render.CameraView(facing()), PLAIN, render.Skin(stream))
+    frame = render.Frame(render.CameraView(facing()), PLAIN_STYLE, render.Skin(stream))
     renderer.draw(frame)
     stream.upload(len(stream.vertices), len(stream.triangles))
     for use in (renderer.draw, renderer.read):
@@ -146,13 +152,13 @@ def test_a_frame_of_a_stream_that_was_filled_anew_is_refused(renderer):
 def test_parts_under_opened_skin_are_seen_through_it(renderer):
     """A ball behind a translucent wall is visible, although it is drawn after the skin."""
     wall = render.Skin(lent(renderer, square(z=40.0)))
-    style = replace(PLAIN, opacity=0.3)
+    style = replace(PLAIN_STYLE, opacity=0.3)
     view = render.CameraView(facing())
     alone = picture(renderer, render.Frame(view, style, wall))
     opened = picture(renderer, render.Frame(view, style, wall, still(Ball())))
-    whole = picture(renderer, render.Frame(view, PLAIN, wall, still(Ball())))
+    whole = picture(renderer, render.Frame(view, PLAIN_STYLE, wall, still(Ball())))
     assert opened[48, 48].astype(int).sum() < alone[48, 48].astype(int).sum() - 60
-    assert np.array_equal(whole, picture(renderer, render.Frame(view, PLAIN, wall)))
+    assert np.array_equal(whole, picture(renderer, render.Frame(view, PLAIN_STYLE, wall)))
 
 
 def test_a_change_of_samples_leaves_no_hole():
@@ -162,7 +168,7 @@ def test_a_change_of_samples_leaves_no_hole():
         camera = facing()
         camera.orbit(180.0)
         frame = render.Frame(
-            render.CameraView(camera), PLAIN, render.Skin(lent(renderer, square()))
+            render.CameraView(camera), PLAIN_STYLE, render.Skin(lent(renderer, square()))
         )
         pictures = []
         for samples in (0, 4, 0):

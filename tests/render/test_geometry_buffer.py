@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from risorius import render
 
-from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square, still
+from .scenes import PLAIN_STYLE, Ball, Shape, facing, joined, lent, sphere, square, still
 
 CHORD = 0.2  # [scene units] greatest depth of a flat triangle below its ball, for 8192 triangles
 
@@ -25,7 +25,7 @@ def drawn(surface, shape, camera, *, parts=()):
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
     view = render.CameraView(camera)
-    return renderer.read(render.Frame(view, PLAIN, render.Skin(stream), still(*parts)))
+    return renderer.read(render.Frame(view, PLAIN_STYLE, render.Skin(stream), still(*parts)))
 
 
 @settings(max_examples=15, deadline=None)

@@ -11,7 +11,7 @@ from risorius.app.cli.styles import LIGHT_NAMES
 from .scenes import (
     DARK_SKIN,
     LIGHT_SKIN,
-    PLAIN,
+    PLAIN_STYLE,
     Ball,
     draw,
     draw_image,
@@ -23,7 +23,7 @@ from .scenes import (
     still,
 )
 
-SHADED = replace(PLAIN, shadows=True, albedo=render.CLAY)
+SHADED_STYLE = replace(PLAIN_STYLE, shadows=True, albedo=render.CLAY)
 NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
 
 
@@ -37,7 +37,7 @@ def swapped(light):
 def scene(surface, light):
     """A ball before a wall, in a mesh that is mirror-symmetric."""
     shape = joined(square(70.0, z=-45.0), sphere(3, 30.0))
-    return draw_image(surface, shape, replace(SHADED, light=light))
+    return draw_image(surface, shape, replace(SHADED_STYLE, light=light))
 
 
 def test_light_of_the_other_side_makes_the_mirror_image(surface):
@@ -61,18 +61,18 @@ def test_other_light_leaves_nothing_behind(surface, renderer):
         draw(renderer, stream, style, parts=still(Ball()), camera=camera)
         return surface.read()
 
-    studio = picture(SHADED)
+    studio = picture(SHADED_STYLE)
     for name, light in render.LIGHTS.items():
-        other = picture(replace(SHADED, light=light))
+        other = picture(replace(SHADED_STYLE, light=light))
         assert (other == studio).all() == (name == "studio")
-    assert (picture(SHADED) == studio).all()
+    assert (picture(SHADED_STYLE) == studio).all()
 
 
 @pytest.mark.parametrize("name", render.LIGHTS)
 def test_no_light_is_too_bright_or_too_dark(surface, name):
     """Balls in light and dark skin are neither white nor black where they face the viewer."""
     for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
-        style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
+        style = replace(PLAIN_STYLE, albedo=albedo, light=render.LIGHTS[name])
         image = draw_image(surface, sphere(4, 50.0), style)
         middle = drawn(image) & (np.hypot(*np.indices(image.shape[:2]) - 47.5) < 32)
         shown = image[middle]

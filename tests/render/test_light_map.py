@@ -8,7 +8,7 @@ import pytest
 from risorius import render
 from risorius.render.light_map import directions
 
-from .scenes import PLAIN, draw_image, sphere
+from .scenes import PLAIN_STYLE, draw_image, sphere
 
 
 def matte(light, normals):
@@ -78,7 +78,7 @@ def test_a_ball_is_lit_as_the_map_says(surface):
     away = directions(32, 64)
     radiance[away[..., 0] > 0.3] = (1.0, 0.1, 0.1)
     radiance[away[..., 0] < -0.3] = (0.1, 0.1, 1.0)
-    style = replace(PLAIN, albedo=render.CLAY, light=render.LightMap(radiance).light())
+    style = replace(PLAIN_STYLE, albedo=render.CLAY, light=render.LightMap(radiance).light())
     image = draw_image(surface, sphere(4, 50.0), style).astype(int)
     height, width = image.shape[:2]
     left, right = (image[height // 2, round(share * width)] for share in (0.35, 0.65))

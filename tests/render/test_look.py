@@ -16,7 +16,7 @@ from risorius import render
 
 from .scenes import LIGHT_SKIN, Ball, draw, joined, lent, sphere, square
 
-STORED = Path(__file__).parent / "pictures"
+STORED_FOLDER = Path(__file__).parent / "pictures"
 SIZE = (160, 120)
 
 STYLES = {
@@ -51,9 +51,9 @@ def test_picture_is_as_stored(name, tmp_path):
         if "llvmpipe" not in driver:
             pytest.skip(f"the stored pictures are Mesa's (llvmpipe), and this driver is {driver}")
         frame = scene(surface, STYLES[name])
-    path = STORED / f"{name}.png"
+    path = STORED_FOLDER / f"{name}.png"
     if os.environ.get("RISORIUS_STORE_PICTURES"):
-        STORED.mkdir(exist_ok=True)
+        STORED_FOLDER.mkdir(exist_ok=True)
         Image.fromarray(frame).save(path)
     expected = np.asarray(Image.open(path).convert("RGB"))
     difference = np.abs(frame.astype(int) - expected.astype(int)).max(axis=2)

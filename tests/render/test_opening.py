@@ -8,9 +8,9 @@ from pytest import approx
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, at, draw
+from .scenes import PLAIN_STYLE, STILL_TRANSFORMS, Ball, at, draw
 
-WHITISH = (0.8, 0.8, 0.8)
+WHITISH_COLOUR = (0.8, 0.8, 0.8)
 
 
 def rim(width, height, z):
@@ -20,9 +20,11 @@ def rim(width, height, z):
     return np.stack([-0.5 * width * np.cos(t), 0.5 * height * np.sin(t), np.full(count, z)], axis=1)
 
 
-def light(renderer, opening, style=PLAIN):
+def light(renderer, opening, style=PLAIN_STYLE):
     """The brightness of a picture of a ball of radius 20, behind an opening (None: without one)."""
-    placed = render.PlacedPart.on_bone(Ball(colour=WHITISH), STILL, opening=opening)
+    placed = render.PlacedPart.on_bone(
+        Ball(colour=WHITISH_COLOUR), STILL_TRANSFORMS, opening=opening
+    )
     return draw(renderer, style=style, parts=[placed]).sum(axis=2)[..., None]
 
 
@@ -75,7 +77,7 @@ def test_a_tongue_outside_the_mouth_has_all_light(renderer):
 @pytest.mark.parametrize("is_filled", [True, False])
 def test_without_skin_maps_openings_do_not_count(renderer, is_filled):
     """With skin maps off, openings darken nothing."""
-    style = replace(PLAIN, skin_maps=False)
+    style = replace(PLAIN_STYLE, skin_maps=False)
     opening = render.Opening(rim(30.0, 10.0, 22.0), is_filled=is_filled)
     assert (light(renderer, opening, style) == light(renderer, None, style)).all()
     assert (light(renderer, opening) < light(renderer, None)).any()

@@ -9,7 +9,19 @@ from pytest import approx
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, Shape, at, draw, drawn, facing, lent, square, still
+from .scenes import (
+    PLAIN_STYLE,
+    STILL_TRANSFORMS,
+    Ball,
+    Shape,
+    at,
+    draw,
+    drawn,
+    facing,
+    lent,
+    square,
+    still,
+)
 
 
 def reshaped(ball, **changes):
@@ -49,7 +61,7 @@ def test_wet_parts_have_a_crisp_highlight(renderer):
     """Shine makes a few pixels nearly white, and changes only these and the outline."""
     frames = []
     for shine in (0.0, 1.0):
-        style = replace(PLAIN, background=render.DARK)
+        style = replace(PLAIN_STYLE, background=render.DARK)
         ball = Ball(shine=shine, colour=(0.1, 0.1, 0.1))
         image = draw(renderer, style=style, parts=still(ball), camera=facing(25.0))
         frames.append(image.sum(axis=2))
@@ -179,10 +191,12 @@ def test_a_hem_of_hair_throws_no_shadow(renderer):
             np.full((len(ball.vertices), 1), dense),
         ]
         hair = reshaped(ball, striation=np.hstack(columns))
-        placed = [render.PlacedPart.on_bone(hair, STILL, throws_shadow=True)]
-        style = replace(PLAIN, shadows=True)
+        placed = [render.PlacedPart.on_bone(hair, STILL_TRANSFORMS, throws_shadow=True)]
+        style = replace(PLAIN_STYLE, shadows=True)
         lit.append(draw(renderer, wall, style=style, parts=placed).sum(axis=2))
     shaded = (lit[0] - lit[1])[60:, 56:]  # below and right: the key is above at the left
     assert shaded.max() > 100
-    wall_alone = draw(renderer, lent(renderer, square(z=-25.0)), style=replace(PLAIN, shadows=True))
+    wall_alone = draw(
+        renderer, lent(renderer, square(z=-25.0)), style=replace(PLAIN_STYLE, shadows=True)
+    )
     assert np.abs(lit[0] - wall_alone.sum(axis=2)).max() < 12

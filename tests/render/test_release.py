@@ -11,7 +11,7 @@ import pytest
 from risorius import render
 from tests.memory import held_memory
 
-from .scenes import PLAIN, Ball, draw, sphere, still
+from .scenes import PLAIN_STYLE, Ball, draw, sphere, still
 
 KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "framebuffer")
 KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
@@ -57,8 +57,8 @@ def draw_all(surface):
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), 128, np.uint8), 1.0)
     values = np.arange(len(shape.triangles), dtype=np.uint8)
     styles = [
-        replace(PLAIN, shadows=True),
-        replace(PLAIN, wireframe=True, colour_by=render.ColourBy.SPLITS),
+        replace(PLAIN_STYLE, shadows=True),
+        replace(PLAIN_STYLE, wireframe=True, colour_by=render.ColourBy.SPLITS),
     ]
     for style in styles:
         skin = render.Skin(stream, render.SkinMaps(texture, bumps), values=values)
@@ -84,7 +84,7 @@ def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
 def test_a_lost_part_leaves_nothing(monkeypatch):
     """A renderer that draws several persons keeps only the parts of the last one."""
     left = list[Counter[str]]()
-    style = replace(PLAIN, shadows=True)
+    style = replace(PLAIN_STYLE, shadows=True)
     with render.open_offscreen((96, 96), samples=4) as surface:
         renderer = render.Renderer(surface)
         count = counting(monkeypatch)

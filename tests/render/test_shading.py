@@ -7,10 +7,10 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, at, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
 
-FLAT = replace(PLAIN, shading=render.Shading.FLAT)
-GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
+FLAT_STYLE = replace(PLAIN_STYLE, shading=render.Shading.FLAT)
+GOURAUD_STYLE = replace(PLAIN_STYLE, shading=render.Shading.GOURAUD)
 
 
 def test_flat_facets_have_one_colour(surface):
@@ -19,7 +19,7 @@ def test_flat_facets_have_one_colour(surface):
     tilted = Shape(shape.positions.copy(), shape.normals, shape.triangles[:1])
     tilted.positions[:, 2] = (0.0, 25.0, 5.0, 0.0)
     spread = {}
-    for name, style in (("flat", FLAT), ("gouraud", GOURAUD)):
+    for name, style in (("flat", FLAT_STYLE), ("gouraud", GOURAUD_STYLE)):
         frame = draw_image(surface, tilted, style)
         inner = frame[60:72, 56:72].reshape(-1, 3)
         spread[name] = int(np.ptp(inner, axis=0).max())
@@ -34,12 +34,12 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
         """The sum of the colours in the middle of the facet."""
         return int(at(draw_image(surface, shape, style), 3.0, -1.0).sum())
 
-    assert middle(PLAIN) > middle(GOURAUD) + 20
+    assert middle(PLAIN_STYLE) > middle(GOURAUD_STYLE) + 20
 
 
 def test_light_comes_from_the_upper_left(surface):
     """A sphere is brightest at the upper left, and its dark side is not black."""
-    frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
+    frame = draw_image(surface, sphere(4), replace(PLAIN_STYLE, albedo=render.CLAY)).sum(axis=2)
     upper_left = frame[32, 32]
     lower_right = frame[64, 64]
     assert upper_left > 1.5 * lower_right
@@ -50,7 +50,7 @@ def test_terminator_of_skin_is_warm(surface):
     """Where light fades out, skin is redder than its albedo, and clay is not."""
     shares = {}
     for name, albedo in (("skin", render.SKIN), ("clay", render.CLAY)):
-        style = replace(PLAIN, albedo=albedo, background=render.DARK)
+        style = replace(PLAIN_STYLE, albedo=albedo, background=render.DARK)
         frame = draw_image(surface, sphere(4), style).astype(float)
         share = frame[:, :, 0] / frame.sum(axis=2)
         shares[name] = share[60, 60] - share[36, 36]
@@ -61,7 +61,7 @@ def test_inner_side_is_dark_flesh(surface):
     """From behind, a surface is much darker, and red."""
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
-    for style in (FLAT, GOURAUD, PLAIN):
+    for style in (FLAT_STYLE, GOURAUD_STYLE, PLAIN_STYLE):
         front = at(draw_image(surface, shape, style), 5.0, 5.0)
         behind = at(draw_image(surface, turned, style), 5.0, 5.0)
         assert behind.sum() < 0.4 * front.sum()
@@ -86,7 +86,7 @@ def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
     """
     skin = fading(renderer, square(30.0), (0.0, 0.0, 1.0, 1.0), 1.0)  # from the bottom to the top
     pictures = []
-    style = replace(PLAIN, wireframe=wireframe, wire_width=0.01)
+    style = replace(PLAIN_STYLE, wireframe=wireframe, wire_width=0.01)
     for each in (render.Skin(skin.stream), skin):
         image = draw(renderer, each, style)
         pictures.append(255.0 - image.mean(axis=2))
@@ -129,7 +129,7 @@ def test_the_inside_of_cheeks_is_dark_behind_the_lips(renderer, shading):
     """
     shape = square(30.0)
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     skin = render.Skin(lent(renderer, turned))
     lit = draw(renderer, skin, style)
     behind = draw(renderer, replace(skin, mouth=round_rim()), style)

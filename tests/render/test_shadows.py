@@ -8,7 +8,7 @@ import pytest
 from risorius import render
 
 from .scenes import (
-    PLAIN,
+    PLAIN_STYLE,
     Ball,
     Shape,
     at,
@@ -27,8 +27,8 @@ def test_shadow_of_the_key_light(surface):
     blocker = square(12.0, z=30.0)
     thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
     shape = joined(square(), joined(blocker, thick))
-    without = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY))
-    within = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
+    without = draw_image(surface, shape, replace(PLAIN_STYLE, albedo=render.CLAY))
+    within = draw_image(surface, shape, replace(PLAIN_STYLE, albedo=render.CLAY, shadows=True))
     # The key light is at (-0.53, 0.63, 0.57): the shadow of a point 28 mm before the wall is 26 mm
     # right and 31 mm down.
     assert at(within, 26.0, -31.0).sum() < 0.8 * at(without, 26.0, -31.0).sum()
@@ -54,7 +54,7 @@ def wall_in_shadow(style):
 
 def test_shadows_have_soft_edges():
     """From shadow to light the wall brightens steadily, on a head within 2 to 6 mm."""
-    within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY))
+    within, without = wall_in_shadow(replace(PLAIN_STYLE, albedo=render.CLAY))
     lightness = within.sum(axis=1) / without.sum(axis=1)
     darkest = int(lightness.argmin())
     edge = lightness[darkest:]
@@ -71,7 +71,7 @@ def test_shadows_have_soft_edges():
 @pytest.mark.parametrize("shading", render.Shading)
 def test_convex_things_do_not_shadow_themselves(surface, shading):
     """On a coarse sphere, shadows change almost nothing, without stripes at the terminator."""
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     without = draw_image(surface, sphere(2), style)
     within = draw_image(surface, sphere(2), replace(style, shadows=True))
     assert np.abs(within - without).max() < 25
@@ -96,7 +96,7 @@ def test_few_triangles_with_round_normals_have_no_stripes(surface, shading):
     flat = square(25.0)
     corners = flat.positions[:, :1] * right + flat.positions[:, 1:2] * np.cross(grazed, right)
     shape = Shape(corners, np.tile(round_normal, (len(corners), 1)), flat.triangles)
-    style = replace(PLAIN, albedo=render.CLAY, shading=shading)
+    style = replace(PLAIN_STYLE, albedo=render.CLAY, shading=shading)
     without = draw_image(surface, shape, style)
     within = draw_image(surface, shape, replace(style, shadows=True))
     drawn = np.abs(without - draw_image(surface, square(0.01), style)).max(axis=2) > 8.0
@@ -112,7 +112,7 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(renderer, shadows):
 
     The ball does not shadow itself: hair slightly nearer to the light casts no shadow.
     """
-    style = replace(PLAIN, albedo=render.CLAY, shadows=shadows)
+    style = replace(PLAIN_STYLE, albedo=render.CLAY, shadows=shadows)
     wall = lent(renderer, square())
     before_wall = np.eye(4)
     before_wall[2, 3] = 30.0

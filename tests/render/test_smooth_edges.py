@@ -8,7 +8,7 @@ import pytest
 from risorius import render
 
 from .scenes import (
-    PLAIN,
+    PLAIN_STYLE,
     Ball,
     Shape,
     draw,
@@ -22,10 +22,10 @@ from .scenes import (
     still,
 )
 
-CLAY = replace(PLAIN, gloss=0.0)
+CLAY_STYLE = replace(PLAIN_STYLE, gloss=0.0)
 
 
-def pictures(shape, style=CLAY, *, camera=None):
+def pictures(shape, style=CLAY_STYLE, *, camera=None):
     """Lightness (0..255) of a shape without and with smooth edges, shape (2, H, W)."""
     seen = []
     for samples in (0, 4):
@@ -50,7 +50,7 @@ def test_an_outline_covers_as_much_as_its_shape():
 
     The covered area is exact.
     """
-    black = replace(CLAY, albedo=(0.0, 0.0, 0.0))
+    black = replace(CLAY_STYLE, albedo=(0.0, 0.0, 0.0))
     hard, smooth = pictures(turned(square(30.0), 20.0), black)
     darkest = smooth.min()
     cover = (255.0 - smooth) / (255.0 - darkest)
@@ -65,7 +65,7 @@ def test_an_outline_covers_as_much_as_its_shape():
 def test_colours_inside_stay_as_they_are(shading):
     """Pixels more than one pixel from any edge are unchanged."""
     shape = sphere(4, 40.0)
-    style = replace(CLAY, shading=shading)
+    style = replace(CLAY_STYLE, shading=shading)
     hard, smooth = pictures(shape, style)
     away = np.hypot(*(np.indices(hard.shape) - 47.5))
     radius = away[hard < 250.0].max()
@@ -119,7 +119,7 @@ def test_facets_have_smooth_edges():
     """With flat shading, lines between triangles are smooth, too."""
     values = (np.arange(2) % 2).astype(np.uint8) * 3
     shape = turned(square(30.0), 10.0)
-    style = replace(CLAY, colour_by=render.ColourBy.SPLITS)
+    style = replace(CLAY_STYLE, colour_by=render.ColourBy.SPLITS)
     seen = []
     for samples in (0, 4):
         with render.open_offscreen((96, 96), samples=samples) as surface:
@@ -134,7 +134,7 @@ def test_facets_have_smooth_edges():
 def test_a_small_disc_stays_round():
     """A disc as wide as pupils has the same area at any place within a pixel."""
     areas = []
-    black = replace(CLAY, albedo=(0.0, 0.0, 0.0))
+    black = replace(CLAY_STYLE, albedo=(0.0, 0.0, 0.0))
     for shift in (0.0, 0.3, 0.7):
         disc = sphere(4, 7.0)
         moved = Shape(

@@ -10,13 +10,13 @@ import pytest
 from risorius import render
 from risorius.render.texture import _first_halved, _halved, _lit_texels, _roots, _values
 
-from .scenes import PLAIN, Shape, at, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
 
 
 def textured(
     surface,
     image,
-    style=PLAIN,
+    style=PLAIN_STYLE,
     *,
     shape=None,
     values=None,
@@ -64,7 +64,9 @@ def quarters():
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_top_row_lies_at_v_1(surface, shading, wireframe):
     """The image's top row lies at v = 1, not mirrored, in every shading."""
-    frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
+    frame = textured(
+        surface, quarters(), replace(PLAIN_STYLE, shading=shading, wireframe=wireframe)
+    )
     assert frame[24, 24].argmax() == 0
     assert frame[24, 24, 0] > 150 > frame[24, 24, 1]
     assert frame[24, 72].argmax() == 1
@@ -78,7 +80,7 @@ def test_top_row_lies_at_v_1(surface, shading, wireframe):
 def test_grey_texture_is_the_grey_albedo(surface, level):
     """A grey texture gives the same picture as an equal albedo, because sRGB is decoded."""
     albedo = (level / 255.0,) * 3
-    style = replace(PLAIN, gloss=0.0, albedo=albedo)  # highlights depend on the picture
+    style = replace(PLAIN_STYLE, gloss=0.0, albedo=albedo)  # highlights depend on the picture
     expected = draw_image(surface, sphere(3), style)
     frame = textured(surface, plain_image((level,) * 3), style, shape=sphere(3))
     assert np.abs(frame - expected).max() <= 2
@@ -128,8 +130,8 @@ def test_compiled_texels_are_those_of_whole_arrays(size, is_shaded):
 
 def test_untextured_style_is_the_plain_picture(surface):
     """With textured=False a texture changes no pixel; without texture, `textured` does not."""
-    style = replace(PLAIN, textured=False)
-    expected = draw_image(surface, square(), PLAIN)
+    style = replace(PLAIN_STYLE, textured=False)
+    expected = draw_image(surface, square(), PLAIN_STYLE)
     assert (textured(surface, quarters(), style) == expected).all()
     assert (draw_image(surface, square(), style) == expected).all()
     assert (textured(surface, quarters()) != expected).any()
@@ -138,7 +140,7 @@ def test_untextured_style_is_the_plain_picture(surface):
 @pytest.mark.parametrize("shading", render.Shading)
 def test_splits_tint_the_texture(surface, shading):
     """Unsplit triangles stay textured; the others have the palette's hue over the texture."""
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     counted = replace(style, colour_by=render.ColourBy.SPLITS)
     image = quarters()
     frame = textured(surface, image, counted, values=np.array([0, 4], np.uint8))
@@ -159,7 +161,7 @@ def test_lips_gloss(surface):
     shine = {}
     for name, image in (("lips", lips), ("all lips", plain_image((200, 120, 108), (256, 256)))):
         frames = [
-            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4))
+            textured(surface, image, replace(PLAIN_STYLE, gloss=gloss), shape=square(bulge=0.4))
             for gloss in (0.0, 1.0)
         ]
         shine[name] = int((frames[1] - frames[0])[46:50, 46:50].sum())
@@ -190,7 +192,7 @@ def test_skin_between_dark_hairs_shines_like_bare_skin(surface):
     shine = {}
     for name, image in (("skin", skin), ("stubble", stubble)):
         frames = [
-            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4))
+            textured(surface, image, replace(PLAIN_STYLE, gloss=gloss), shape=square(bulge=0.4))
             for gloss in (0.0, 0.4)
         ]
         shine[name] = (frames[1] - frames[0])[30:66, 30:66].astype(int)
@@ -236,7 +238,7 @@ def test_less_light_where_it_is_less_open(surface, shading):
     occlusion = np.full((8, 8), 255, np.uint8)
     occlusion[:, :4] = 128
     occlusion[4:, :4] = 0
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     plain = textured(surface, image, style)
     folded = textured(surface, image, style, occlusion=occlusion)
     height, width = plain.shape[:2]
@@ -258,7 +260,7 @@ def test_fine_shape_tilts_the_normal_of_each_pixel(surface, shading, is_textured
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128
     image = plain_image((180, 140, 120))
-    style = replace(PLAIN, shading=shading)
+    style = replace(PLAIN_STYLE, shading=shading)
     style = replace(style, textured=is_textured)
     plain = textured(surface, image, style)
     shown = textured(surface, image, style, fine_shape=(slopes, 100.0))

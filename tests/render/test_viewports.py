@@ -4,7 +4,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Ball, facing, lent, sphere, still
+from .scenes import PLAIN_STYLE, Ball, facing, lent, sphere, still
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -23,7 +23,10 @@ def test_viewports_are_apart(samples):
             lines = [render.Lines([stream.vertices[:9, :3]], (1, 0, 0))]
             views = [render.CameraView(camera, viewport) for viewport in viewports]
             renderer.draw(
-                *(render.Frame(view, PLAIN, skin, still(Ball()), overlays=lines) for view in views)
+                *(
+                    render.Frame(view, PLAIN_STYLE, skin, still(Ball()), overlays=lines)
+                    for view in views
+                )
             )
             images.append(surface.read())
     both, alone = images
@@ -37,4 +40,4 @@ def test_viewport_must_have_pixels(surface):
     """A viewport without extent is refused."""
     with pytest.raises(ValueError, match=r"viewport is \(0, 0, 0, 10\); it must be"):
         view = render.CameraView(facing(), (0, 0, 0, 10))
-        render.Renderer(surface).draw(render.Frame(view, PLAIN))
+        render.Renderer(surface).draw(render.Frame(view, PLAIN_STYLE))

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from risorius import sim
 
-FRAME = 1.0 / 60.0
+FRAME_TIME = 1.0 / 60.0
 Array = npt.NDArray[np.float64]
 
 
@@ -31,7 +31,7 @@ def settled_displacement(
     simulation.reset()
     simulation.controls.set_all(values)
     for _ in range(frames):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
     moved: Array = simulation.positions - simulation.rest_positions
     return moved
 

@@ -8,7 +8,7 @@ import trimesh
 
 from risorius import sim
 from tests.meshes import open_grid
-from tests.sim.poses import FRAME, both_sides, moved_landmarks, settled_displacement, without
+from tests.sim.poses import FRAME_TIME, both_sides, moved_landmarks, settled_displacement, without
 
 
 def _grid():
@@ -53,7 +53,7 @@ def test_any_mesh_is_stable_and_comes_back(mesh, generator):
     simulation.step(1 / 20)
     assert 1e-4 * size < np.abs(simulation.positions - simulation.rest_positions).max() < 2.0 * size
     for _ in range(120):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-4 * size
 
 
@@ -63,7 +63,7 @@ def test_input_arrays_are_copied(head):
     before = mesh.vertices.copy()
     simulation = sim.create(mesh)
     simulation.touch.kick(np.ones_like(before))
-    simulation.step(FRAME)
+    simulation.step(FRAME_TIME)
     assert np.array_equal(mesh.vertices, before)
     mesh.vertices[:] = 7.0
     assert np.array_equal(simulation.rest_positions, before)
@@ -80,7 +80,7 @@ def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head):
     """Without landmarks a rig has no muscles, but its tissue still holds the skin."""
     simulation = sim.create(without(head, "landmarks", "eyes", "jaw_axis"))
     assert simulation.controls.lowest == ()
-    simulation.step(FRAME)
+    simulation.step(FRAME_TIME)
 
 
 def test_everything_can_be_guessed_from_landmarks(head):

@@ -9,7 +9,7 @@ from risorius import sim
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
 NOSE_TIP = 30
-CHIN = 8
+CHIN_LANDMARK = 8
 INNER_LIPS = (62, 66)
 
 
@@ -32,7 +32,7 @@ def test_lips_stay_closed_over_an_open_jaw(simulation, head):
     """With lips_closed the lips do not part over an open jaw; without it they do."""
     for opening in (0.3, 1.0):
         moved = settled_displacement(simulation, {"jaw_open": opening, "lips_closed": 1.0})
-        assert moved_landmarks(head, moved, CHIN)[1] < -20.0 * opening
+        assert moved_landmarks(head, moved, CHIN_LANDMARK)[1] < -20.0 * opening
         assert lip_gap(simulation, head) < 0.5
     settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 20.0
@@ -50,7 +50,7 @@ def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
     apart = lip_gap(other, head)
     assert apart > 2.0
     moved = settled_displacement(other, {"jawOpen": 1.0, "mouthClose": 1.0})
-    assert moved_landmarks(head, moved, CHIN)[1] < -10.0
+    assert moved_landmarks(head, moved, CHIN_LANDMARK)[1] < -10.0
     assert abs(lip_gap(other, head) - apart) < 0.25 * apart + 1.0
     settled_displacement(other, {"joy": 1.0})
     assert np.isfinite(other.positions).all()

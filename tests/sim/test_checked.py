@@ -20,40 +20,65 @@ COUNT = 9
 MAY_BE = r"must|allowed|did you mean|see \.limits|Allowed|is lower case|leave|give|reads"
 POINTS = np.zeros((2, 3))
 IS_WIDER = np.finfo(np.longdouble).max > np.finfo(np.float64).max
-WIDE = [np.full((2, 3), np.finfo(np.longdouble).max)] if IS_WIDER else []
-ARRAYS = (  # values that are not (2, 3) finite numbers
-    *NONSENSE, *WIDE, 3, HUGE, np.zeros(3), np.zeros((3, 2)), np.zeros((2, 3, 1)), POINTS + NAN,
-    POINTS - INF, [[HUGE] * 3] * 2, POINTS.astype(str), POINTS.astype(object),
+WIDE_NUMBERS = [np.full((2, 3), np.finfo(np.longdouble).max)] if IS_WIDER else []
+WRONG_ARRAYS = (  # values that are not (2, 3) finite numbers
+    *NONSENSE, *WIDE_NUMBERS, 3, HUGE, np.zeros(3), np.zeros((3, 2)), np.zeros((2, 3, 1)),
+    POINTS + NAN, POINTS - INF, [[HUGE] * 3] * 2, POINTS.astype(str), POINTS.astype(object),
     POINTS.astype(complex), POINTS.astype("M8[s]"),
 )  # fmt: skip
-NUMBERS = (  # values that are not two different vertices of nine
+WRONG_INDICES = (  # values that are not two different vertices of nine
     *NONSENSE, [0.7], [0.7, 1.0], [1, 1], [0, -1], [0, COUNT], [0, HUGE], [2**63, 1], 1, [[0, 1]],
     [True, False], [NAN, 1.0], np.array(["0", "1"]), np.array([0, 2**64 - 1], np.uint64),
 )  # fmt: skip
-SHARES = (*NONSENSE, [0.5], [0.5, 1.1], [-0.1, 0.5], [NAN, 0.5], [HUGE, 0.5], 0.5, [[0.5], [0.5]])
-NAMES = (None, 3, "", "nonsense", b"jaw_open", NAN, HUGE, ("jaw_open",), "x" * 10**6, "\n")
-TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
+SHARES = (
+    *NONSENSE,
+    [0.5],
+    [0.5, 1.1],
+    [-0.1, 0.5],
+    [NAN, 0.5],
+    [HUGE, 0.5],
+    0.5,
+    [[0.5], [0.5]],
+)
+WRONG_NAMES = (
+    None,
+    3,
+    "",
+    "nonsense",
+    b"jaw_open",
+    NAN,
+    HUGE,
+    ("jaw_open",),
+    "x" * 10**6,
+    "\n",
+)
+WRONG_TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
 
 TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
 
 # Method, the wrong argument, its name in the message, and its wrong values.
-WRONG = [
-    ("controls.set", "name", "control", (*NAMES, [], {})),
+WRONG_ARGUMENTS = [
+    ("controls.set", "name", "control", (*WRONG_NAMES, [], {})),
     ("controls.set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
-    ("controls.set_all", "values", "values", TABLES),
-    ("controls.set_all", "values", "control", tuple({name: 1.0} for name in NAMES)),
+    ("controls.set_all", "values", "values", WRONG_TABLES),
+    ("controls.set_all", "values", "control", tuple({name: 1.0} for name in WRONG_NAMES)),
     ("controls.set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("controls.pose", "values", "values", TABLES),
+    ("controls.pose", "values", "values", WRONG_TABLES),
     ("controls.pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("controls.set_array", "values", "values", ARRAYS),
+    ("controls.set_array", "values", "values", WRONG_ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
-    ("touch.kick", "velocities", "velocities", ARRAYS),
-    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # 4 alone is valid
-    ("touch.drag", "targets", "targets", ARRAYS),
+    ("touch.kick", "velocities", "velocities", WRONG_ARRAYS),
+    (
+        "touch.drag",
+        "vertices",
+        "vertices",
+        WRONG_INDICES[:3] + WRONG_INDICES[4:],
+    ),  # 4 alone is valid
+    ("touch.drag", "targets", "targets", WRONG_ARRAYS),
     ("touch.drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
 ]
-RIGHT = {
+RIGHT_ARGUMENTS = {
     "controls.set": {"name": "jaw_open", "value": 0.5},
     "controls.set_all": {"values": {"jaw_open": 0.5}},
     "controls.pose": {"values": {"jaw_open": 0.5}},
@@ -86,12 +111,12 @@ def refused(call, begins):
     assert text.startswith((begins, "there is no control called")) and len(text) < 500, text
 
 
-@pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
+@pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG_ARGUMENTS)
 def test_wrong_arguments_are_reported(small, method, argument, begins, values):
     """A wrong argument raises a ValueError with its name, and changes nothing."""
     small.reset()
     for value in values:
-        wrong = {**RIGHT.get(method, {}), argument: value}
+        wrong = {**RIGHT_ARGUMENTS.get(method, {}), argument: value}
         refused(lambda wrong=wrong: attrgetter(method)(small)(**wrong), begins)
     assert not any(small.controls.values.values())
     small.step(1 / 60)
@@ -100,7 +125,15 @@ def test_wrong_arguments_are_reported(small, method, argument, begins, values):
 
 EYE = SimpleNamespace(name="left", centre=[0.0, 0.0, 0.0], radius=1.0)
 PART = SimpleNamespace(name="teeth_upper", bone="cranium", vertices=np.zeros((2, 3)))
-LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # no lists of the expected objects
+WRONG_LISTS = (
+    *NONSENSE[1:3],
+    object(),
+    3,
+    NAN,
+    [3],
+    [None],
+    [[]],
+)  # no lists of the expected objects
 
 
 def with_(thing, name, *values):
@@ -117,27 +150,27 @@ def under(*keys):
     return rigs
 
 
-HEADS = [
-    ("vertices", "head.vertices", (*ARRAYS, np.zeros((0, 3)))),
+WRONG_HEADS = [
+    ("vertices", "head.vertices", (*WRONG_ARRAYS, np.zeros((0, 3)))),
     ("faces", "head.faces", NONSENSE[:3] + NONSENSE[4:]),
     ("faces", "head.faces", ([[0, 1, COUNT]], [[0, 1, -1]], [[0.0, 1, 2]], [[0, 1, HUGE]])),
     ("faces", "head.faces", ([[0, 1]], [0, 1, 2], [[NAN] * 3], [["0", "1", "2"]])),
     ("landmarks", "head.landmarks", (*NONSENSE[1:], 3, np.zeros(68), np.full(68, COUNT))),
     ("mandible_weight", "head.mandible_weight", (*NONSENSE[1:], 3, [NAN] * COUNT, [HUGE] * COUNT)),
-    ("jaw_axis", "head.jaw_axis", ARRAYS[1:]),
+    ("jaw_axis", "head.jaw_axis", WRONG_ARRAYS[1:]),
     ("rig", "rig", (3, "rig", b"rig", object(), [1], {"muscle": 3}, {3: 4}, {None: 1})),
     ("rig", "rig", ({"format": [1]}, {"format": HUGE}, {"format": np.ones(2)}, {"tissue": "x"})),
     ("rig", "rig, 'tissue'", under("tissue", "shear")(*NO_NUMBER)),
-    ("rig", "rig, 'jaw'", under("jaw", "opening_glide")(*ARRAYS, [HUGE] * 3)),
+    ("rig", "rig, 'jaw'", under("jaw", "opening_glide")(*WRONG_ARRAYS, [HUGE] * 3)),
     ("rig", "rig, 'jaw'", under("jaw", "seeds")(3, [], {"²": 1.0}, {"9" * 5000: 1.0}, {"1": HUGE})),
-    ("eyes", "head.eyes", (*LISTS, *with_(EYE, "name", *NAMES))),
+    ("eyes", "head.eyes", (*WRONG_LISTS, *with_(EYE, "name", *WRONG_NAMES))),
     ("eyes", "head.eyes", with_(EYE, "centre", *NONSENSE, 3, POINTS, [NAN] * 3, [HUGE] * 3)),
     ("eyes", "head.eyes", with_(EYE, "radius", *NO_NUMBER, 0, -1)),
-    ("parts", "head.parts", (*LISTS, *with_(PART, "vertices", 3, [NAN], "x", [[HUGE] * 3]))),
+    ("parts", "head.parts", (*WRONG_LISTS, *with_(PART, "vertices", 3, [NAN], "x", [[HUGE] * 3]))),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("attribute", "begins", "values"), HEADS)
+@pytest.mark.parametrize(("attribute", "begins", "values"), WRONG_HEADS)
 def test_wrong_heads_are_refused(attribute, begins, values):
     """`create` names the wrong attribute of a head."""
     for value in values:
@@ -146,7 +179,7 @@ def test_wrong_heads_are_refused(attribute, begins, values):
         refused(lambda head=head: sim.create(head), begins)
 
 
-@pytest.mark.parametrize("given", LISTS)
+@pytest.mark.parametrize("given", WRONG_LISTS)
 def test_wrong_layers_are_reported(given):
     """A head's layers must be a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")

@@ -13,7 +13,7 @@ from risorius.sim.skull import Eyeball, ball_surface
 from risorius.sim.state import State
 from risorius.sim.surface import build_surface
 
-AHEAD = (0.0, 0.0, 1.0)
+FORWARD = (0.0, 0.0, 1.0)
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick():
@@ -30,7 +30,7 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
     assert eyes.vertex.tolist() == [0, 1, 2, 3]
     assert eyes.least == approx([10.0, 12.1, 12.3, 12.3])
     sunk = ball.centre + np.array([10.0, 12.1, 11.8, 12.3, 1.0])[:, None] * [0.0, 0.6, 0.8]
-    assert eyes.deepest(sunk, np.array([AHEAD])) == approx(0.5)
+    assert eyes.deepest(sunk, np.array([FORWARD])) == approx(0.5)
 
 
 def flat_lid(size):
@@ -43,7 +43,7 @@ def flat_lid(size):
     return ball, surface, watch_eyeballs(surface, (ball,))
 
 
-@pytest.mark.parametrize("look", [AHEAD, (0.0, -0.6, 0.8)], ids=["ahead", "down"])
+@pytest.mark.parametrize("look", [FORWARD, (0.0, -0.6, 0.8)], ids=["ahead", "down"])
 @pytest.mark.parametrize("size", [1.0, 5.0], ids=["fine", "coarse"])
 def test_a_cornea_does_not_pierce_a_lid(look, size):
     """No point of a lid's triangle is nearer to ball and cornea than a lid is thick.

@@ -10,7 +10,7 @@ from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
 from risorius.sim.face_model import build_face_model
 from tests.sim.poses import (
-    FRAME,
+    FRAME_TIME,
     both_sides,
     inverted_triangles,
     lip_gap,
@@ -18,8 +18,8 @@ from tests.sim.poses import (
     settled_displacement,
 )
 
-SIX = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
-OTHERS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
+BASIC_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
+OTHER_EXPRESSIONS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
 
 
 @pytest.mark.parametrize(
@@ -48,28 +48,38 @@ def test_muscle_pulls_its_landmark(simulation, head, muscle, landmark, direction
     assert moved_landmarks(head, moved, landmark) @ way > least
 
 
-UP = np.array([0.0, 1.0, 0.0])
-LEFT = np.array([1.0, 0.0, 0.0])
-EXPRESSED = {  # landmarks, their direction, and their least motion [mm]
-    "joy": [((54,), UP, 5.0), ((48,), UP, 5.0), ((54,), LEFT, 3.0), ((48,), -LEFT, 3.0)],
-    "sadness": [((48, 54), -UP, 2.0)],
-    "surprise": [
-        ((18, 19, 20, 23, 24, 25), UP, 4.0),
-        ((37, 38, 43, 44), UP, 1.0),
-        ((8,), -UP, 12.0),
+UPWARD = np.array([0.0, 1.0, 0.0])
+LEFTWARD = np.array([1.0, 0.0, 0.0])
+EXPRESSED_MOTIONS = {  # landmarks, their direction, and their least motion [mm]
+    "joy": [
+        ((54,), UPWARD, 5.0),
+        ((48,), UPWARD, 5.0),
+        ((54,), LEFTWARD, 3.0),
+        ((48,), -LEFTWARD, 3.0),
     ],
-    "anger": [((21, 22), -UP, 3.0), ((22,), -LEFT, 0.5)],
-    "disgust": [((31, 35), UP, 3.0), ((50, 52), UP, 3.0)],
+    "sadness": [((48, 54), -UPWARD, 2.0)],
+    "surprise": [
+        ((18, 19, 20, 23, 24, 25), UPWARD, 4.0),
+        ((37, 38, 43, 44), UPWARD, 1.0),
+        ((8,), -UPWARD, 12.0),
+    ],
+    "anger": [((21, 22), -UPWARD, 3.0), ((22,), -LEFTWARD, 0.5)],
+    "disgust": [((31, 35), UPWARD, 3.0), ((50, 52), UPWARD, 3.0)],
     # In fear the brow rises with the raised fold below it, which else is a dark shelf.
-    "fear": [((19, 24), UP, 4.5), ((21, 22), UP, 2.0), ((43, 44), UP, 1.0), ((54,), LEFT, 2.0)],
+    "fear": [
+        ((19, 24), UPWARD, 4.5),
+        ((21, 22), UPWARD, 2.0),
+        ((43, 44), UPWARD, 1.0),
+        ((54,), LEFTWARD, 2.0),
+    ],
 }
 
 
-@pytest.mark.parametrize("name", EXPRESSED)
+@pytest.mark.parametrize("name", EXPRESSED_MOTIONS)
 def test_expressions_move_their_landmarks(simulation, head, name):
     """In each expression brows, lids, mouth corners, lips and jaw move in its direction."""
     moved = settled_displacement(simulation, head.expressions[name])
-    for landmarks, way, least in EXPRESSED[name]:
+    for landmarks, way, least in EXPRESSED_MOTIONS[name]:
         assert moved_landmarks(head, moved, *landmarks) @ way > least, landmarks
 
 
@@ -203,7 +213,7 @@ def test_sadness_slants_the_brows(simulation, head):
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0 + moved_landmarks(head, moved, 17, 26)[1]
 
 
-@pytest.mark.parametrize("name", SIX + OTHERS)
+@pytest.mark.parametrize("name", BASIC_EXPRESSIONS + OTHER_EXPRESSIONS)
 def test_expression_keeps_the_mesh_sound(simulation, head, name):
     """In each expression hardly any triangle is turned over, and skin stays near."""
     moved = settled_displacement(simulation, head.expressions[name])
@@ -301,7 +311,7 @@ def test_skin_never_enters_the_eyeball(simulation, head, gaze):
     for level in (1.0, 0.0):
         simulation.controls.set_all({**dict.fromkeys(around, level), "gaze_vertical": gaze})
         for _ in range(20):
-            simulation.step(FRAME)
+            simulation.step(FRAME_TIME)
             for eye in head.eyes:
                 distance = norm(simulation.positions - eye.centre, axis=1)
                 before = norm(simulation.rest_positions - eye.centre, axis=1)
@@ -412,7 +422,7 @@ def test_a_corner_of_the_mouth_shows_a_muscle_of_its_side(simulation, head, corn
     for yaw in (0.0, 1.0):
         simulation.controls.set("head_yaw", yaw)
         for _ in range(30):
-            simulation.step(FRAME)
+            simulation.step(FRAME_TIME)
         place = simulation.positions[head.landmarks[corner]]
         assert simulation.anatomy.muscle_at(place, 14.0).endswith(side)
 

@@ -10,9 +10,9 @@ from pytest import approx
 
 from risorius.sim.controls import Control, Controls
 from risorius.sim.layers import BOTH_SIDES, LEAST_WHOLE, read_layers
-from tests.sim.poses import FRAME, inverted_triangles, lip_gap, settled_displacement
+from tests.sim.poses import FRAME_TIME, inverted_triangles, lip_gap, settled_displacement
 
-LOWEST = ("puller_left", "puller_right", "middle", "slide")
+LOWEST_CONTROLS = ("puller_left", "puller_right", "middle", "slide")
 ACTION_UNITS = (
     *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20)),
     *(f"AU{n}" for n in (22, 23, 24, 25, 26, 27, 28, 29, 30, 34, 43, 45, 46, 61, 62, 63, 64)),
@@ -23,7 +23,7 @@ EXPRESSIONS = (
     "mouth_open", "blink",
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
-ARKIT = {  # numbers of ARKit's shapes for each part of the face
+ARKIT_COUNTS = {  # numbers of ARKit's shapes for each part of the face
     "eye": 14, "jaw": 4, "mouth": 23, "brow": 5, "cheek": 3, "nose": 2, "tongue": 1,
 }  # fmt: skip
 TITLES = ("Action units", "Expressions", "Visemes", "ARKit shapes")
@@ -37,22 +37,24 @@ def layer(title, **rows):
 
 def controls(*layers):
     """Four lowest controls, one with two directions, below some layers."""
-    lowest = tuple(Control(name, "Lowest", -1.0 if name == "slide" else 0.0) for name in LOWEST)
-    return Controls(lowest, read_layers(layers, LOWEST))
+    lowest = tuple(
+        Control(name, "Lowest", -1.0 if name == "slide" else 0.0) for name in LOWEST_CONTROLS
+    )
+    return Controls(lowest, read_layers(layers, LOWEST_CONTROLS))
 
 
-UNITS = layer(
+UNITS_LAYER = layer(
     "Units",
     A={"action": "pulls", "pair": True, "puller": 0.8, "middle": 0.6},
     B_left={"slide": 1.0},
     B_right={"slide": -1.0},
 )
-FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
+FACES_LAYER = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 
 def sums_of(*numbers):
     """Sums of the lowest controls, in order."""
-    return dict(zip(LOWEST, numbers, strict=True))
+    return dict(zip(LOWEST_CONTROLS, numbers, strict=True))
 
 
 def wanted(subject, **values):
@@ -63,7 +65,7 @@ def wanted(subject, **values):
 
 def test_rows_add_to_the_layers_below():
     """A row scales its entries through every layer, down to the muscles."""
-    subject = controls(UNITS, FACES)
+    subject = controls(UNITS_LAYER, FACES_LAYER)
     assert wanted(subject, both=1.0) == approx(sums_of(0.4, 0.4, 0.3, 0.25))
     assert wanted(subject, both=0.5)["puller_left"] == approx(0.2)
     assert wanted(subject, puller=0.7) == sums_of(0.7, 0.7, 0.0, 0.0)
@@ -71,11 +73,11 @@ def test_rows_add_to_the_layers_below():
 
 def test_sides_of_a_pair_add_up_to_the_whole():
     """A side activates its own muscles, and half of a muscle in the middle."""
-    subject = controls(UNITS)
+    subject = controls(UNITS_LAYER)
     left = wanted(subject, A_left=1.0)
     right = wanted(subject, A_right=1.0)
     assert left == approx(sums_of(0.8, 0.0, 0.3, 0.0))
-    assert wanted(subject, A=1.0) == approx({n: left[n] + right[n] for n in LOWEST})
+    assert wanted(subject, A=1.0) == approx({n: left[n] + right[n] for n in LOWEST_CONTROLS})
 
 
 def test_sides_may_be_spelled_as_arkit_does():
@@ -86,7 +88,7 @@ def test_sides_may_be_spelled_as_arkit_does():
     assert wanted(subject, smileLeft=1.0) == approx(sums_of(0.5, 0.0, 0.1, 0.0))
 
 
-SHARED = layer(
+SHAPES_LAYER = layer(
     "Shapes", whole={"slide": 1.0}, part={"share_of": "whole", "middle": 0.8, "puller": 0.5}
 )
 
@@ -97,7 +99,7 @@ def test_a_fraction_counts_as_part_of_the_whole(part, whole):
 
     It never jumps.
     """
-    subject = controls(SHARED)
+    subject = controls(SHAPES_LAYER)
     share = wanted(subject, part=part, whole=whole)["middle"] / 0.8
     assert 0.0 <= share <= 1.0
     if whole > LEAST_WHOLE:
@@ -109,7 +111,7 @@ def test_a_fraction_counts_as_part_of_the_whole(part, whole):
 
 def test_a_fraction_follows_the_whole_that_is_set_later():
     """A share follows its whole in any order of setting, and everything it moves follows."""
-    subject = controls(SHARED)
+    subject = controls(SHAPES_LAYER)
     subject.set_all({"part": 0.3})
     assert not subject.wanted.any()
     subject.set_all({"whole": 0.6})
@@ -142,15 +144,15 @@ def test_sums_are_cut_off_once_and_in_any_order():
 
     Opposite contributions cancel.
     """
-    subject = controls(UNITS, FACES)
-    other = controls(UNITS, FACES)
+    subject = controls(UNITS_LAYER, FACES_LAYER)
+    other = controls(UNITS_LAYER, FACES_LAYER)
     values = {"puller_left": 0.5, "A": 0.9, "both": 1.0, "B_left": 1.0, "B_right": 0.4}
     for name, value in values.items():
         subject.set_all({name: value})
     for name in reversed(values):
         other.set_all({name: values[name]})
     assert subject.wanted.tolist() == other.wanted.tolist()
-    sums = dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
+    sums = dict(zip(LOWEST_CONTROLS, subject.wanted.tolist(), strict=True))
     assert sums["puller_left"] == 1.0  # 0.5 + 0.72 + 0.4
     assert sums["slide"] == approx(1.0 - 0.4 + 0.25)
     assert subject.values["puller_left"] == 0.5, "a layer does not change values set below it"
@@ -192,7 +194,7 @@ def test_a_row_cannot_use_a_fraction():
     A fraction depends on set values, which a row in a higher layer does not have.
     """
     with pytest.raises(ValueError, match=r"'above', 'part': is a fraction of 'whole', and"):
-        controls(SHARED, layer("Y", above={"part": 1.0}))
+        controls(SHAPES_LAYER, layer("Y", above={"part": 1.0}))
 
 
 def test_the_shipped_tables_are_complete(controls, head):
@@ -205,7 +207,9 @@ def test_the_shipped_tables_are_complete(controls, head):
     assert set(EXPRESSIONS) <= set(controls.layers["Expressions"])
     assert controls.layers["Visemes"] == tuple(f"viseme_{sound}" for sound in VISEMES)
     shapes = controls.layers["ARKit shapes"]
-    assert {part: sum(name.startswith(part) for name in shapes) for part in ARKIT} == ARKIT
+    assert {
+        part: sum(name.startswith(part) for name in shapes) for part in ARKIT_COUNTS
+    } == ARKIT_COUNTS
     assert len(shapes) == 52
     assert tuple(controls.layers) == (BOTH_SIDES, *TITLES)
     for title in TITLES:
@@ -331,7 +335,7 @@ def test_speech_is_crisp(simulation, head, sound):
     size = float((target**2).sum())
     reached = []
     for _ in range(60):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
         moved = (simulation.positions - simulation.rest_positions)[lips]
         reached.append(float((moved * target).sum()) / size)
     assert reached[6] > 0.9, "seven frames are 117 ms"

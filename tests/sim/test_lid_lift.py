@@ -16,61 +16,61 @@ from risorius.sim.skull import Eyeball
 from tests.heads import UserHead
 
 CLEARANCE = 0.3  # [mm]
-BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
-AHEAD = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
-FACE = np.array([[0, 1, 2]], np.int32)
-ALL = np.ones(3)
-ABOVE = np.array([0.0, 20.0, 0.0])  # an earlier place of a closing lid
+EYEBALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
+LID_OUTLINE = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
+LID_FACES = np.array([[0, 1, 2]], np.int32)
+FULL_WEIGHTS = np.ones(3)
+EARLIER_PLACE = np.array([0.0, 20.0, 0.0])  # an earlier place of a closing lid
 
 
 def at(beside, distance):
     """Points in front of the ball at this distance [mm] from its centre, shape (n, 3)."""
     ahead = np.sqrt(distance**2 - (beside**2).sum(axis=1))
-    return BALL.centre + np.column_stack([beside, ahead])
+    return EYEBALL.centre + np.column_stack([beside, ahead])
 
 
 def lifted(x, lift):
     """Points moved away from the ball by `lift` [mm]."""
-    away = x - BALL.centre
+    away = x - EYEBALL.centre
     return x + lift[:, None] * away / norm(away, axis=1, keepdims=True)
 
 
 def nearest(x):
     """Smallest distance of a triangle (3, 3) from the ball's centre [mm]."""
     shares = np.random.default_rng(2).dirichlet([1.0, 1.0, 1.0], 20_000)
-    return float(norm(shares @ (x - BALL.centre), axis=1).min())
+    return float(norm(shares @ (x - EYEBALL.centre), axis=1).min())
 
 
 def test_a_flat_triangle_is_lifted_over_the_cornea():
     """A flat triangle whose middle cuts the cornea is lifted until its middle is outside."""
-    closed = at(AHEAD, 14.0)
-    rest = closed + ABOVE
+    closed = at(LID_OUTLINE, 14.0)
+    rest = closed + EARLIER_PLACE
     assert nearest(closed) < 13.0
-    lift = lift_off(closed, rest, FACE, ALL, BALL)
+    lift = lift_off(closed, rest, LID_FACES, FULL_WEIGHTS, EYEBALL)
     assert (lift > 0.5).all()
     assert 13.0 + CLEARANCE + 0.8 < nearest(lifted(closed, lift)) < 13.0 + CLEARANCE + 1.3
 
 
 def test_distant_triangles_are_not_lifted():
     """Small triangles at a lid's thickness from the ball, beside the cornea, are not lifted."""
-    closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
-    assert not lift_off(closed, closed, FACE, ALL, BALL).any()
+    closed = at(LID_OUTLINE / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
+    assert not lift_off(closed, closed, LID_FACES, FULL_WEIGHTS, EYEBALL).any()
 
 
 @pytest.mark.parametrize(
     ("faces", "moves", "sunk"),
     [
-        (FACE, np.zeros(3), 0.0),  # a lower lid
-        (FACE[:, ::-1], ALL, 0.0),  # the inner side of a lid
-        (FACE, ALL, 3.0),  # started inside the ball, under the lid's edge
+        (LID_FACES, np.zeros(3), 0.0),  # a lower lid
+        (LID_FACES[:, ::-1], FULL_WEIGHTS, 0.0),  # the inner side of a lid
+        (LID_FACES, FULL_WEIGHTS, 3.0),  # started inside the ball, under the lid's edge
     ],
     ids=["lower lid", "inner side", "sunk at rest"],
 )
 def test_other_triangles_are_not_lifted(faces, moves, sunk):
     """Only the outer side of the upper lid is lifted."""
-    closed = at(AHEAD, 14.0)
-    rest = at(AHEAD, 13.0 - sunk) if sunk else closed + ABOVE
-    assert not lift_off(closed, rest, faces, moves, BALL).any()
+    closed = at(LID_OUTLINE, 14.0)
+    rest = at(LID_OUTLINE, 13.0 - sunk) if sunk else closed + EARLIER_PLACE
+    assert not lift_off(closed, rest, faces, moves, EYEBALL).any()
 
 
 def test_the_drawn_eyeball_fits_the_lifted_lids(head):
@@ -86,7 +86,7 @@ def test_the_drawn_eyeball_fits_the_lifted_lids(head):
         tiny = inward[:, None] + [[0.0, 0.0, 0.0], [1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0]]
         faces = np.arange(3 * len(drawn), dtype=np.int32).reshape(-1, 3)
         points = tiny.reshape(-1, 3)
-        lift = lift_off(points, points + 2.0 * ABOVE, faces, np.ones(len(points)), ball)
+        lift = lift_off(points, points + 2.0 * EARLIER_PLACE, faces, np.ones(len(points)), ball)
         assert lift.reshape(-1, 3)[:, 0] == pytest.approx(2.0 * CLEARANCE, abs=0.12)
 
 

@@ -13,13 +13,13 @@ from risorius.sim.lids import raised_at_corners
 from risorius.sim.skull import Eyeball
 from tests.sim.poses import both_sides, settled_displacement
 
-WHERE = np.linspace(0.0, 1.0, LID_COLUMNS)
+COLUMN_FRACTIONS = np.linspace(0.0, 1.0, LID_COLUMNS)
 
 
 def test_no_step_below_a_corner_above_the_lower_lid():
     """The seam rises from a lid at -8 degrees to a corner at 6 degrees without a notch."""
-    seam = np.radians(np.where((WHERE == 0.0) | (WHERE == 1.0), 6.0, -8.0))
-    upper = np.radians(6.0 + 68.0 * WHERE * (1.0 - WHERE))
+    seam = np.radians(np.where((COLUMN_FRACTIONS == 0.0) | (COLUMN_FRACTIONS == 1.0), 6.0, -8.0))
+    upper = np.radians(6.0 + 68.0 * COLUMN_FRACTIONS * (1.0 - COLUMN_FRACTIONS))
     raised = raised_at_corners(seam, upper)
     assert np.abs(np.diff(raised)).max() < np.radians(1.0)
     assert (raised >= seam).all()
@@ -29,8 +29,8 @@ def test_no_step_below_a_corner_above_the_lower_lid():
 
 def test_a_level_lid_keeps_its_seam():
     """Nothing is raised if the lower lid runs straight into the corners."""
-    seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * WHERE))
-    upper = seam + np.radians(45.0) * np.sin(np.pi * WHERE)
+    seam = np.radians(-21.0 - 3.0 * np.sin(np.pi * COLUMN_FRACTIONS))
+    upper = seam + np.radians(45.0) * np.sin(np.pi * COLUMN_FRACTIONS)
     assert_allclose(raised_at_corners(seam, upper), seam, atol=np.radians(0.3))
 
 

@@ -14,8 +14,8 @@ from risorius.assets.model import Head
 from risorius.bench.gaps import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settled_displacement
 
-SHUT = 0.3  # [mm], about a pixel of a full-screen close-up
-UNMOVED = 0.01  # [mm]; lips that no muscle moves need no check
+SHUT_GAP = 0.3  # [mm], about a pixel of a full-screen close-up
+UNMOVED_DISTANCE = 0.01  # [mm]; lips that no muscle moves need no check
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
 OPENERS = (
     "levator_labii_superioris_alaeque_nasi", "levator_labii_superioris",
@@ -54,7 +54,7 @@ def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
     """In expressions with a closed mouth the lips are shut, refined or not."""
     settled_displacement(simulation, head.expressions[name])
     for mesh, slit in slits().items():
-        assert slit < SHUT, mesh
+        assert slit < SHUT_GAP, mesh
 
 
 @pytest.mark.slow
@@ -79,10 +79,10 @@ def test_no_other_muscle_opens_the_mouth(simulation, model, slits, sides, streng
         if sides == "left":
             values = {name: value for name, value in values.items() if "_right" not in name}
         moved = settled_displacement(simulation, values, frames=40)
-        if np.abs(moved[model.skin.lips.members]).max() < UNMOVED:
+        if np.abs(moved[model.skin.lips.members]).max() < UNMOVED_DISTANCE:
             continue
         for mesh, slit in slits().items():
-            assert slit < SHUT, (muscle, mesh)
+            assert slit < SHUT_GAP, (muscle, mesh)
 
 
 def test_slit_measure_sees_an_open_mouth(simulation, head, slits):

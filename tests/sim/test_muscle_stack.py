@@ -9,17 +9,17 @@ from risorius import sim
 from risorius.sim.fibres import FIBRE_POINTS, SAMPLE_COUNT, move_lines
 from tests.sim.poses import settled_displacement, without
 
-ABOVE = "zygomaticus_major"
-BENEATH = "buccinator"
+UPPER_MUSCLE = "zygomaticus_major"
+LOWER_MUSCLE = "buccinator"
 
 
 def stacked(head, stack, **changes):
-    """The head whose only stacked muscles are those of `stack`; `changes` apply to BENEATH."""
+    """The head whose only stacked muscles are those of `stack`; `changes` apply to LOWER_MUSCLE."""
     face = without(head)
     face.rig = copy.deepcopy(dict(head.rig))
     for name, muscle in face.rig["muscle"].items():
         muscle["lies_on"] = stack.get(name, [])
-    face.rig["muscle"][BENEATH].update(changes)
+    face.rig["muscle"][LOWER_MUSCLE].update(changes)
     return face
 
 
@@ -34,9 +34,9 @@ def test_a_muscle_rises_on_the_bulge_beneath(head):
     """Over a thicker buccinator, the relaxed zygomaticus rises farther from the cheekbone."""
     rises = []
     for bulge in (0.0, 5.0, 10.0):
-        simulation = sim.create(stacked(head, {ABOVE: [BENEATH]}, bulge=bulge))
-        settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
-        rises.append(displaced(simulation, f"{ABOVE}_left"))
+        simulation = sim.create(stacked(head, {UPPER_MUSCLE: [LOWER_MUSCLE]}, bulge=bulge))
+        settled_displacement(simulation, {f"{LOWER_MUSCLE}_left": 1.0})
+        rises.append(displaced(simulation, f"{UPPER_MUSCLE}_left"))
     outward = np.array([0.7, 0.0, 0.7])
     lifted = [float(((rise - rises[0]) @ outward).max()) for rise in rises]
     assert lifted[1] > 1.5
@@ -47,11 +47,11 @@ def test_a_muscle_rises_on_the_bulge_beneath(head):
 def test_only_muscles_beneath_move_a_muscle(head):
     """A muscle is not moved by one it does not lie on, nor by one of the other side."""
     apart = sim.create(stacked(head, {}))
-    settled_displacement(apart, {f"{BENEATH}_left": 1.0})
-    assert not displaced(apart, f"{ABOVE}_left").any()
-    stack = sim.create(stacked(head, {ABOVE: [BENEATH]}))
-    settled_displacement(stack, {f"{BENEATH}_left": 1.0})
-    assert not displaced(stack, f"{ABOVE}_right").any()
+    settled_displacement(apart, {f"{LOWER_MUSCLE}_left": 1.0})
+    assert not displaced(apart, f"{UPPER_MUSCLE}_left").any()
+    stack = sim.create(stacked(head, {UPPER_MUSCLE: [LOWER_MUSCLE]}))
+    settled_displacement(stack, {f"{LOWER_MUSCLE}_left": 1.0})
+    assert not displaced(stack, f"{UPPER_MUSCLE}_right").any()
 
 
 def test_carrying_is_the_formula(simulation, model, state):

@@ -6,14 +6,14 @@ from numpy.linalg import norm
 from pytest import approx
 
 from risorius import sim
-from tests.sim.poses import FRAME
+from tests.sim.poses import FRAME_TIME
 
-FINGER = 16.0  # [mm]
+FINGER_REACH = 16.0  # [mm]
 RIGHT_CORNER = 48
 LEFT_CORNER = 54
 LEFT_BROW = 24
-NOSE = 30
-CHIN = 8
+NOSE_LANDMARK = 30
+CHIN_LANDMARK = 8
 LEFT_LID = 44
 INNER_BROW = 22
 LEFT_WING = 35
@@ -33,8 +33,8 @@ def candidates(face):
 def pull_at(face, vertex, offset, **options):
     """Solve for skin around a vertex pulled by an offset [mm]; return its middle's motion."""
     distance = norm(face.positions - face.positions[vertex], axis=1)
-    finger = np.flatnonzero(distance < FINGER)
-    firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
+    finger = np.flatnonzero(distance < FINGER_REACH)
+    firmness = (1.0 - (distance[finger] / FINGER_REACH) ** 2) ** 2
     pull = sim.Pull(face, finger, firmness, candidates(face), **options)
     pull.targets = pull.targets + np.asarray(offset)
     before = pull.remaining
@@ -51,7 +51,7 @@ def settled(face, values):
     """The places of the skin after these controls have settled."""
     face.controls.set_all(values)
     for _ in range(60):
-        face.step(FRAME)
+        face.step(FRAME_TIME)
     return face.positions.copy()
 
 
@@ -74,8 +74,8 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
     ("landmark", "offset", "wanted"),
     [
         (LEFT_BROW, (0.0, 5.0, 0.0), {"frontalis_lateral_left", "frontalis_medial_left"}),
-        (CHIN, (0.0, -15.0, 0.0), {"jaw_open"}),
-        (CHIN, (8.0, 0.0, 0.0), {"jaw_sideways"}),
+        (CHIN_LANDMARK, (0.0, -15.0, 0.0), {"jaw_open"}),
+        (CHIN_LANDMARK, (8.0, 0.0, 0.0), {"jaw_sideways"}),
         (LEFT_CORNER, (0.0, -6.0, 0.0), {"depressor_anguli_oris_left"}),
         (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
     ],
@@ -92,7 +92,7 @@ def test_skin_is_held_by_the_muscles_of_anatomy(simulation, head, landmark, offs
 def test_skin_without_muscles_does_not_move(simulation, head):
     """Pulled forward, the nose above its tip does not move, and neither does the crown."""
     pull, before = pull_at(
-        simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
+        simulation, head.landmarks[NOSE_LANDMARK - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
     assert not pull.changes
     assert pull.remaining == approx(before)
@@ -109,7 +109,7 @@ def test_skin_without_muscles_does_not_move(simulation, head):
     [
         (LEFT_CORNER, (0.8, 0.6, 0.0)),
         (INNER_BROW, (-1.0, 0.0, 0.0)),
-        (NOSE, (0.0, 1.0, 0.0)),
+        (NOSE_LANDMARK, (0.0, 1.0, 0.0)),
         (LEFT_WING, (1.0, 0.0, 0.0)),
     ],
 )
@@ -177,7 +177,7 @@ def test_few_muscles_are_found_again(simulation, head, generator):
         vertex = int((norm(moved, axis=1) * front).argmax())
         simulation.reset()
         distance = norm(simulation.positions - simulation.positions[vertex], axis=1)
-        finger = np.flatnonzero(distance < FINGER)
+        finger = np.flatnonzero(distance < FINGER_REACH)
         if norm(moved[finger].mean(axis=0)[:2]) < 1.5:  # mm, as seen from the front
             continue
         pull = sim.Pull(simulation, finger, np.ones(len(finger)), candidates(simulation))

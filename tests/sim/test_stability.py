@@ -7,13 +7,13 @@ import pytest
 
 from risorius import sim
 from risorius.sim.substep import SEAL_AXES
-from tests.sim.poses import FRAME, both_sides, settled_displacement
+from tests.sim.poses import FRAME_TIME, both_sides, settled_displacement
 
 
 def test_rest_stays_at_rest(simulation, model, state):
     """In two seconds without input, nothing moves by a millionth of a millimetre."""
     for _ in range(120):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
     assert _energy(model.skin, state, simulation.grip) < 1e-9
 
@@ -24,7 +24,7 @@ def test_energy_only_falls_without_input(simulation, model, state, generator, sp
     simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
     energies = [_energy(model.skin, state, simulation.grip)]
     for _ in range(90):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
         energies.append(_energy(model.skin, state, simulation.grip))
     assert np.all(np.diff(energies) <= 1e-9 * energies[0])
     assert energies[-1] < 1e-6 * energies[0]
@@ -38,7 +38,7 @@ def test_clones_do_not_disturb_each_other(simulation):
         frames = []
         for frame in range(240):
             clone.controls.set(name, float(frame // 20 % 2))
-            clone.step(FRAME)
+            clone.step(FRAME_TIME)
             frames.append(clone.positions.copy())
         return frames
 
@@ -75,7 +75,7 @@ def test_everything_at_once_on_and_off(simulation):
         level = float(beat % 2)
         simulation.controls.set_all({name: level for name in simulation.controls.lowest})
         for _ in range(6):
-            simulation.step(FRAME)
+            simulation.step(FRAME_TIME)
         assert np.abs(_moved(simulation)).max() < 90.0
 
 
@@ -116,9 +116,9 @@ def test_broken_state_is_reported(simulation, state):
     """A state that is not finite raises an error, and a reset repairs it."""
     state.x[10] = np.nan
     with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
     simulation.reset()
-    simulation.step(FRAME)
+    simulation.step(FRAME_TIME)
     assert np.isfinite(simulation.positions).all()
 
 

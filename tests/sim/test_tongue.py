@@ -7,7 +7,7 @@ import pytest
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from tests.assets.checks import part, winding_numbers
-from tests.sim.poses import FRAME, settled_displacement, without
+from tests.sim.poses import FRAME_TIME, settled_displacement, without
 
 Array = npt.NDArray[np.float64]
 LOWER_LIP = 66
@@ -19,7 +19,7 @@ POSES = (
     {"tongue_up": 1.0, "jaw_open": 0.2}, {"viseme_TH": 1.0}, {"viseme_DD": 1.0},
     {"viseme_nn": 1.0}, {"tongue_out": 1.0},
 )  # fmt: skip
-QUICK = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD": 1.0}
+QUICK_POSES = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD": 1.0}
 
 
 def placed(simulation, points, bone):
@@ -105,7 +105,7 @@ def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
 
 @pytest.mark.parametrize(
     "pose",
-    [pytest.param(pose, marks=() if pose in QUICK else pytest.mark.slow) for pose in POSES],
+    [pytest.param(pose, marks=() if pose in QUICK_POSES else pytest.mark.slow) for pose in POSES],
     ids=str,
 )
 def test_the_tongue_pierces_nothing(simulation, head, pose):
@@ -144,7 +144,7 @@ def test_the_tongue_follows_in_time(simulation):
     for frame in range(60):
         if frame == 30:
             simulation.controls.pose({"jaw_open": 0.4})
-        simulation.step(FRAME)
+        simulation.step(FRAME_TIME)
         now = tongue_now(simulation)
         steps.append(np.linalg.norm(now - before, axis=1).max())
         before = now
@@ -156,7 +156,7 @@ def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
     """A head without a tongue has its controls, because tables name them, and draws nothing."""
     bare = sim.create(without(head))
     bare.controls.pose({"tongue_out": 1.0})
-    bare.step(FRAME)
+    bare.step(FRAME_TIME)
     assert bare.anatomy.tongue() is None
 
 

@@ -19,7 +19,7 @@ from risorius.sim.skull import REST_MOTION
 from risorius.sim.state import State
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, substeps_in, tissue_forces
 from risorius.sim.tissue import carry
-from tests.sim.poses import FRAME, settled_displacement
+from tests.sim.poses import FRAME_TIME, settled_displacement
 
 
 @pytest.fixture
@@ -361,11 +361,11 @@ def test_a_step_is_its_substeps(model):
     values = {"zygomaticus_major_left": 1.0, "frontalis_medial_right": 1.0}
     fast.controls.set_all(values)
     plain.controls.set_all(values)
-    fast.step(FRAME)
-    plain.controls.advance(FRAME / 2.0)
+    fast.step(FRAME_TIME)
+    plain.controls.advance(FRAME_TIME / 2.0)
     plain.place_targets()
-    for _ in range(substeps_in(FRAME)):
-        _plain_substep(without_contact, state, plain.grip, FRAME / substeps_in(FRAME))
+    for _ in range(substeps_in(FRAME_TIME)):
+        _plain_substep(without_contact, state, plain.grip, FRAME_TIME / substeps_in(FRAME_TIME))
     moved = state.x - model.surface.positions
     expected = plain.rest_positions + model.space.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6

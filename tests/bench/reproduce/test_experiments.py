@@ -52,11 +52,11 @@ def test_every_claim_can_fail():
             assert each.low > -math.inf or each.high < math.inf, each.value
 
 
-MADE = {
+OUTCOMES = {
     "good": lambda: Outcome({"lines": 0}, np.full((8, 8, 3), 200, np.uint8)),
     "bad": lambda: Outcome({"<c_rt>": 3.0}),
 }
-PLANTED = (
+PLANTED_EXPERIMENTS = (
     Experiment(
         *("good", "Good & sound", "section 1", "planted.good"),
         claims=[Claim("lines", "no line turns", "none", 0.0, 0.0)],
@@ -72,8 +72,8 @@ PLANTED = (
 @pytest.fixture
 def planted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two experiments that take no time: the first meets its claim, the second misses its claim."""
-    monkeypatch.setitem(sys.modules, f"{commands.__package__}.planted", SimpleNamespace(**MADE))
-    monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
+    monkeypatch.setitem(sys.modules, f"{commands.__package__}.planted", SimpleNamespace(**OUTCOMES))
+    monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED_EXPERIMENTS)
 
 
 def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):

@@ -11,11 +11,11 @@ from risorius.bench.reproduce import figure_8
 from risorius.bench.reproduce.experiments import EXPERIMENTS
 from risorius.bench.reproduce.figure_9 import Waving, grey_level_difference, outline_difference
 
-DRAWN = [each for each in EXPERIMENTS if each.picture]
+DRAWN_EXPERIMENTS = [each for each in EXPERIMENTS if each.picture]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("experiment", DRAWN, ids=lambda each: each.name)
+@pytest.mark.parametrize("experiment", DRAWN_EXPERIMENTS, ids=lambda each: each.name)
 def test_figures_are_as_the_paper_says(experiment):
     """Every claim is met, or differs as documented, and the picture of each figure is not empty."""
     result = experiment.run()

@@ -24,7 +24,7 @@ QUICK_SCHEMES = [
     "cubic",
     *(pytest.param(scheme, marks=pytest.mark.slow) for scheme in ("loop", "detail")),
 ]
-BOUND = 12.0
+LARGEST_RATIO = 12.0
 """No point of the surface moves more than this many times the largest motion of the input.
 
 Largest seen: 3.9 for curved edges, 5.0 for detail, 4.7 for the paper's rules; a quarter of the
@@ -67,7 +67,7 @@ def jumps(scheme, blend, criterion, mesh=None):
 def test_nothing_pops(scheme):
     """With blending every point of the surface moves at most in proportion to the input."""
     most, turn = jumps(scheme, True, "normal")
-    assert most < BOUND
+    assert most < LARGEST_RATIO
     # Edges crumple until the normals of neighbours are 120 degrees apart. An added point between
     # them changes interpolated shading by up to 0.15 at once, for steps of any size.
     assert turn < 0.5
@@ -79,7 +79,7 @@ def test_nothing_pops_at_seams_and_tips(name, scheme):
     """Nothing pops on a small tube with a seam, or at a tip, where normals turn fastest."""
     mesh = meshes.tube(6, 3) if name == "seam" else meshes.double_cone(20)
     blended = jumps(scheme, True, "normal", mesh)[0]
-    assert blended < 2 * BOUND
+    assert blended < 2 * LARGEST_RATIO
     assert blended < 0.7 * jumps(scheme, False, "normal", mesh)[0]
 
 
@@ -87,7 +87,7 @@ def test_nothing_pops_at_seams_and_tips(name, scheme):
 @pytest.mark.parametrize("criterion", ["displacement", "normal+rest"])
 def test_nothing_pops_by_other_criteria(criterion, scheme):
     """Nothing pops with the other criteria, or with their maximum."""
-    assert jumps(scheme, True, criterion)[0] < BOUND
+    assert jumps(scheme, True, criterion)[0] < LARGEST_RATIO
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
@@ -128,7 +128,7 @@ def test_outlines_do_not_pop(name, scheme):
             before = positions, points
         return largest
 
-    assert most(True) < BOUND < most(False)
+    assert most(True) < LARGEST_RATIO < most(False)
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
@@ -194,7 +194,7 @@ def _across(grid):
 
 def test_without_blending_it_pops():
     """Without blending the measure detects pops, because the paper's rules have some."""
-    assert jumps("loop", False, "normal")[0] > 2 * BOUND
+    assert jumps("loop", False, "normal")[0] > 2 * LARGEST_RATIO
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

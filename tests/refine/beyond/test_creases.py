@@ -12,14 +12,14 @@ from risorius.refine.mesh.creases import dihedral_angles, sectors_of
 from tests import meshes
 from tests.refine.cases import Forced, soups
 
-LOOK = {"scheme": "cubic", "criterion": "displacement+rest"}
+LOOK_OPTIONS = {"scheme": "cubic", "criterion": "displacement+rest"}
 RULES = [
     {},
     {"coherent": True},
     {"normals": "refined", "criterion": "displacement"},
-    LOOK,
-    {**LOOK, "blend": False},
-    {**LOOK, "normals": "linear", "blend": False},
+    LOOK_OPTIONS,
+    {**LOOK_OPTIONS, "blend": False},
+    {**LOOK_OPTIONS, "normals": "linear", "blend": False},
 ]
 
 
@@ -52,7 +52,7 @@ def volume(points, faces):
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
-@pytest.mark.parametrize("options", [LOOK, {**LOOK, "blend": False}])
+@pytest.mark.parametrize("options", [LOOK_OPTIONS, {**LOOK_OPTIONS, "blend": False}])
 def test_a_cylinder_keeps_its_rims(options):
     """A cylinder's sides become round, with a cylinder's volume; without creases it swells."""
     points, faces = prism(16)
@@ -74,7 +74,9 @@ def test_a_cylinder_keeps_its_rims(options):
 def test_a_cube_stays_one():
     """A cube's flat sides need no splits; forced splits move nothing by more than rounding."""
     points, faces = cube()
-    refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK).refine(points)
+    refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK_OPTIONS).refine(
+        points
+    )
     assert refined.triangle_count == 12
     refiner = refine.create("kahler", faces, points, crease_angle=80.0, scheme="cubic", blend=False,
                             criterion=Forced(np.full(18, 2)))  # fmt: skip
@@ -195,7 +197,7 @@ def test_off_by_default_and_refused_in_words():
     mesh = meshes.irregular(3)
     bent = meshes.wrinkled(mesh, 4)
     frames = [
-        refine.create("kahler", mesh.faces, mesh.vertices, **more, **LOOK).refine(bent)
+        refine.create("kahler", mesh.faces, mesh.vertices, **more, **LOOK_OPTIONS).refine(bent)
         for more in ({}, {"crease_angle": None}, {"crease_angle": 180.0})
     ]
     for frame in frames[1:]:
@@ -206,7 +208,7 @@ def test_off_by_default_and_refused_in_words():
             refine.create("none", mesh.faces, mesh.vertices, crease_angle=wrong)
 
 
-@pytest.mark.parametrize("rules", [{}, LOOK])
+@pytest.mark.parametrize("rules", [{}, LOOK_OPTIONS])
 def test_on_the_card(rules):
     """On the card the paper's rule supports creases; the processor refines cubic edges."""
     points, faces = prism(12)

@@ -35,8 +35,8 @@ def bumpy(columns, rows):
     return meshes.Mesh(vertices, grid.faces)
 
 
-COARSE = bumpy(8, 6)
-FINE = bumpy(48, 36)
+COARSE_MESH = bumpy(8, 6)
+FINE_MESH = bumpy(48, 36)
 
 
 def distances(points, positions, triangles):
@@ -51,10 +51,10 @@ def angles(some, others):
 
 def refined(scheme, positions, **options):
     """The coarse grid with all edges split twice."""
-    edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
+    edge_count = len(refine.connect(COARSE_MESH.faces, len(COARSE_MESH.vertices)).edges)
     criterion = GivenMetric(np.full(edge_count, 9.0))
-    chosen = scheme_of(scheme, FINE.vertices, FINE.faces)
-    refiner = kahler(COARSE, scheme=chosen, criterion=criterion, **options)
+    chosen = scheme_of(scheme, FINE_MESH.vertices, FINE_MESH.faces)
+    refiner = kahler(COARSE_MESH, scheme=chosen, criterion=criterion, **options)
     mesh = refiner.refine(positions)
     refine.check(refiner, mesh, positions)
     return mesh
@@ -65,21 +65,23 @@ def test_lies_on_the_finer_mesh(blend):
     """At rest, with all edges split, the detail scheme is much closer to the finer mesh."""
     errors = {}
     for scheme in ("cubic", "detail"):
-        mesh = refined(scheme, COARSE.vertices, blend=blend)
-        errors[scheme] = distances(FINE.vertices, mesh.positions, mesh.triangles).mean()
-    coarse = distances(FINE.vertices, COARSE.vertices, COARSE.faces).mean()
+        mesh = refined(scheme, COARSE_MESH.vertices, blend=blend)
+        errors[scheme] = distances(FINE_MESH.vertices, mesh.positions, mesh.triangles).mean()
+    coarse = distances(FINE_MESH.vertices, COARSE_MESH.vertices, COARSE_MESH.faces).mean()
     assert errors["detail"] < 0.25 * coarse
     assert errors["detail"] < 0.5 * errors["cubic"]
 
 
 def test_normals_of_the_surface_are_the_finer_ones():
     """With all edges split, refined normals are nearer to the finer mesh's than mean normals."""
-    fine_normals = vertex_normals(FINE.vertices, FINE.faces)
+    fine_normals = vertex_normals(FINE_MESH.vertices, FINE_MESH.faces)
     off = {}
     for normals in ("linear", "refined"):
-        mesh = refined("detail", COARSE.vertices, normals=normals)
+        mesh = refined("detail", COARSE_MESH.vertices, normals=normals)
         places = mesh.positions.astype(np.float64)
-        expected = closest_points(places, FINE.vertices, FINE.faces).interpolate(fine_normals)
+        expected = closest_points(places, FINE_MESH.vertices, FINE_MESH.faces).interpolate(
+            fine_normals
+        )
         expected /= norm(expected, axis=1, keepdims=True)
         off[normals] = np.median(angles(expected, mesh.normals))
     assert off["refined"] < 0.4 * off["linear"]
@@ -118,8 +120,8 @@ def test_no_stars_in_folds():
 def test_turns_with_the_mesh(seed):
     """A rigid motion of the mesh moves all detail rigidly: points, middles and normals."""
     turn = meshes.rotation(seed)
-    still = refined("detail", COARSE.vertices)
-    moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
+    still = refined("detail", COARSE_MESH.vertices)
+    moved = refined("detail", COARSE_MESH.vertices @ turn.T + [1.0, 2.0, 3.0])
     assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
     assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
 

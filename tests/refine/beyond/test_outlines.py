@@ -12,22 +12,22 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 from risorius.assets.loading import load
 
-COUNT = 9
+POINT_COUNT = 9
 
 
 def pit():
     """Vertices and triangles of a tube with nine sides in a plane, whose rim is 0 to 8."""
-    angles = np.linspace(0.0, 2.0 * np.pi, COUNT, endpoint=False)
-    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(COUNT)])
+    angles = np.linspace(0.0, 2.0 * np.pi, POINT_COUNT, endpoint=False)
+    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(POINT_COUNT)])
     vertices = np.vstack([ring, 2.0 * ring, 0.9 * ring - [0.0, 0.0, 1.0]])
-    near, far = np.arange(COUNT), (np.arange(COUNT) + 1) % COUNT
+    near, far = np.arange(POINT_COUNT), (np.arange(POINT_COUNT) + 1) % POINT_COUNT
     faces = [
         np.column_stack(each)
         for each in (
-            (near, near + COUNT, far + COUNT),
-            (near, far + COUNT, far),
-            (near + 2 * COUNT, near, far),
-            (near + 2 * COUNT, far, far + 2 * COUNT),
+            (near, near + POINT_COUNT, far + POINT_COUNT),
+            (near, far + POINT_COUNT, far),
+            (near + 2 * POINT_COUNT, near, far),
+            (near + 2 * POINT_COUNT, far, far + 2 * POINT_COUNT),
         )
     ]
     return vertices, np.vstack(faces).astype(np.int32)
@@ -52,9 +52,9 @@ def radii_between(refiner, positions, rim):
 def test_a_rim_is_nearly_a_circle():
     """Curves of a rim with nine sides stay within 1 % of its circle; their chords do not."""
     vertices, faces = pit()
-    scheme = refine.CubicScheme(outlines=[[*range(COUNT), 0]])
+    scheme = refine.CubicScheme(outlines=[[*range(POINT_COUNT), 0]])
     refiner = refine.create("kahler", faces, vertices, scheme=scheme, criterion="displacement")
-    curves, chords = radii_between(refiner, vertices, [*range(COUNT)])
+    curves, chords = radii_between(refiner, vertices, [*range(POINT_COUNT)])
     assert np.abs(curves - 1.0).max() < 0.01
     assert chords.max() < 0.95
 

@@ -25,9 +25,9 @@ from tests.refine.plain_twin import refine as refine_plainly
 SCHEMES = ("loop", "cubic")
 TOLERANCES = {"linear": (5e-7, 8e-6), "refined": (5e-7, 3e-5)}
 """Of positions, and of normals; refined ones stand on differences of float32 rows."""
-NORMALS = tuple(TOLERANCES)
+NORMALS_OPTIONS = tuple(TOLERANCES)
 VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 7, 60, 90)}
-MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
+MESHES = {**meshes.NAMED_MESHES, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
 
 
 def bound(mesh, scheme, blend, metric, **options):
@@ -65,7 +65,7 @@ def random_metrics(mesh, seed):
 @pytest.mark.parametrize("name", MESHES)
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("normals", NORMALS)
+@pytest.mark.parametrize("normals", NORMALS_OPTIONS)
 def test_equals_plain_twin(normals, scheme, blend, name):
     """Points, normals and triangles are those of the simple twin, on meshes of every kind."""
     mesh = MESHES[name]()
@@ -88,7 +88,7 @@ def test_equals_plain_twin(normals, scheme, blend, name):
     soup=soups(),
     data=st.data(),
     scheme=st.sampled_from(SCHEMES),
-    normals=st.sampled_from(NORMALS),
+    normals=st.sampled_from(NORMALS_OPTIONS),
     blend=st.booleans(),
 )
 def test_soups_equal_twin(soup, data, scheme, normals, blend):

@@ -68,10 +68,10 @@ class Middles(refine.BaseRefiner):
         return super().origins().followed_by(corners, np.full(corners.shape, 1 / 3))
 
 
-@pytest.mark.parametrize("name", meshes.NAMED)
+@pytest.mark.parametrize("name", meshes.NAMED_MESHES)
 def test_named_meshes(name):
     """On every test mesh, the subclass gives a refinement that passes the checker."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     deformed = meshes.wrinkled(mesh, 3)
     refiner = Middles(mesh.faces, mesh.vertices, raised=0.1)
     refine.check(refiner, refiner.refine(deformed), deformed)

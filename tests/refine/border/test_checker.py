@@ -229,12 +229,17 @@ def cut_at(places, inside):
     return refiner, refined, rest
 
 
-PLACES = [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9, 1 / 11, 0.123456]
-INSIDE = [(1 / 3, 1 / 3, 1 / 3), (0.25, 0.5, 0.25), (1 / 13, 5 / 13, 7 / 13), (0.998, 0.001, 0.001)]
+EDGE_PLACES = [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9, 1 / 11, 0.123456]
+INNER_POINTS = [
+    (1 / 3, 1 / 3, 1 / 3),
+    (0.25, 0.5, 0.25),
+    (1 / 13, 5 / 13, 7 / 13),
+    (0.998, 0.001, 0.001),
+]
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("inside", INSIDE)
+@pytest.mark.parametrize("place", EDGE_PLACES)
+@pytest.mark.parametrize("inside", INNER_POINTS)
 def test_points_anywhere(place, inside):
     """A refiner may cut edges anywhere, and add points inside triangles."""
     refine.check(*cut_at((place, place), inside))
@@ -244,13 +249,13 @@ def test_points_anywhere(place, inside):
 def test_single_precision_is_forgiven(place):
     """Weights of whole parts with rounding errors still mean the same place."""
     assert (place * LATTICE_STEPS) % 1.0 == pytest.approx(0.0, abs=1e-9)
-    refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
+    refine.check(*cut_at((place, place + 2e-7), INNER_POINTS[0]))
 
 
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("place", EDGE_PLACES)
 def test_places_apart_are_cracks(place):
     """An edge cut at two different places, however near, is a crack."""
-    refiner, refined, rest = cut_at((place, place + 2.0 / LATTICE_STEPS), INSIDE[0])
+    refiner, refined, rest = cut_at((place, place + 2.0 / LATTICE_STEPS), INNER_POINTS[0])
     check_breaks("no crack, no T-junction", refiner, refined, rest)
 
 
@@ -262,7 +267,7 @@ def test_weights_of_no_place(weights):
 
 def test_thin_subtriangle_on_an_edge():
     """Three points on one edge are a sliver, wherever they are."""
-    refiner, refined, rest = cut_at((1 / 11, 1 / 11), INSIDE[0])
+    refiner, refined, rest = cut_at((1 / 11, 1 / 11), INNER_POINTS[0])
     refined.triangles[2] = [2, 4, 0]
     check_breaks("no sliver", refiner, refined, rest)
 

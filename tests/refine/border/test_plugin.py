@@ -15,7 +15,7 @@ from risorius.refine.kahler.smoothing import LoopScheme
 from tests import meshes
 from tests.refine.cases import kahler
 
-FINE = meshes.octahedron()
+GOOD_MESH = meshes.octahedron()
 
 
 class Outside:
@@ -59,12 +59,12 @@ def test_registered_refiner():
     """A registered refiner is created by name with its options, and passes the checker."""
     refine.refiners.register("outside", Outside)
     assert "outside" in refine.refiners.available()
-    refiner = refine.create("outside", FINE.faces, FINE.vertices, offset=0.0)
+    refiner = refine.create("outside", GOOD_MESH.faces, GOOD_MESH.vertices, offset=0.0)
     assert isinstance(refiner, refine.Refiner)
-    refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
-    moved = refine.create("outside", FINE.faces, FINE.vertices, offset=0.5)
+    refine.check(refiner, refiner.refine(GOOD_MESH.vertices), GOOD_MESH.vertices)
+    moved = refine.create("outside", GOOD_MESH.faces, GOOD_MESH.vertices, offset=0.5)
     with pytest.raises(refine.BrokenMeshError, match="to the last bit"):
-        refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
+        refine.check(moved, moved.refine(GOOD_MESH.vertices), GOOD_MESH.vertices)
 
 
 @pytest.mark.usefixtures("own_refiners")
@@ -87,7 +87,7 @@ def test_bad_registration(name, factory, text):
 def test_unknown_name():
     """The error lists the known names."""
     with pytest.raises(ValueError, match=r"refiner 'khaler' is unknown; there are .*'kahler'"):
-        refine.create("khaler", FINE.faces, FINE.vertices)
+        refine.create("khaler", GOOD_MESH.faces, GOOD_MESH.vertices)
 
 
 @pytest.mark.parametrize(
@@ -105,44 +105,62 @@ def test_unknown_name():
 def test_unknown_option(name, text):
     """The error lists the known options."""
     with pytest.raises(ValueError, match=f"unknown option 'treshold' for refiner '{name}'; {text}"):
-        refine.create(name, FINE.faces, FINE.vertices, treshold=0.1)
+        refine.create(name, GOOD_MESH.faces, GOOD_MESH.vertices, treshold=0.1)
 
 
-NAN = FINE.vertices.copy()
-NAN[4, 1] = np.nan
+NAN_VERTICES = GOOD_MESH.vertices.copy()
+NAN_VERTICES[4, 1] = np.nan
 
 
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"faces": FINE.faces[:, :2]}, r"faces must be integers of shape \(F, 3\), got int32"),
-        ({"faces": FINE.faces.astype(float)}, "faces must be integers .* got float64"),
-        ({"faces": FINE.faces + 1}, r"indices from 0 to 5 into rest_positions, but triangle 4 is"),
+        ({"faces": GOOD_MESH.faces[:, :2]}, r"faces must be integers of shape \(F, 3\), got int32"),
+        ({"faces": GOOD_MESH.faces.astype(float)}, "faces must be integers .* got float64"),
+        (
+            {"faces": GOOD_MESH.faces + 1},
+            r"indices from 0 to 5 into rest_positions, but triangle 4 is",
+        ),
         ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
-        ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
+        ({"rest_positions": GOOD_MESH.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
         ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is not an array"),
         ({"faces": [[0, 1, 2**70]]}, "faces must be integers"),
-        ({"faces": np.ma.masked_equal(FINE.faces, 3)}, "faces .* has masked entries"),
-        ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),
-        ({"rest_positions": FINE.vertices * 1e16}, "must be finite and below 1e.15"),
-        ({"rest_positions": FINE.vertices * 1e9}, "must extend over 1e-06 to 1e.09 .* over 2e.09"),
-        ({"rest_positions": np.ma.masked_equal(FINE.vertices, 1.0)}, "has masked entries"),
-        ({"rest_positions": FINE.vertices.astype(str)}, "rest_positions must be numbers"),
-        ({"face_uv": FINE.faces}, "face_uv points into uv, but uv is None"),
+        ({"faces": np.ma.masked_equal(GOOD_MESH.faces, 3)}, "faces .* has masked entries"),
+        ({"rest_positions": NAN_VERTICES}, "must be finite and below 1e.15, but vertex 4 is"),
+        ({"rest_positions": GOOD_MESH.vertices * 1e16}, "must be finite and below 1e.15"),
+        (
+            {"rest_positions": GOOD_MESH.vertices * 1e9},
+            "must extend over 1e-06 to 1e.09 .* over 2e.09",
+        ),
+        ({"rest_positions": np.ma.masked_equal(GOOD_MESH.vertices, 1.0)}, "has masked entries"),
+        ({"rest_positions": GOOD_MESH.vertices.astype(str)}, "rest_positions must be numbers"),
+        ({"face_uv": GOOD_MESH.faces}, "face_uv points into uv, but uv is None"),
         ({"uv": np.zeros((6, 3))}, r"uv must be numbers of shape \(U, 2\)"),
         ({"uv": np.zeros((5, 2))}, "needs one row per vertex"),
         ({"uv": np.full((6, 2), np.inf)}, "uv must be finite as single precision, but row 0"),
-        ({"attributes": [FINE.vertices]}, "attributes must be arrays by name, .* got list"),
-        ({"attributes": {"a": [FINE.vertices, FINE.faces]}}, "a tuple of such values and the row"),
+        ({"attributes": [GOOD_MESH.vertices]}, "attributes must be arrays by name, .* got list"),
+        (
+            {"attributes": {"a": [GOOD_MESH.vertices, GOOD_MESH.faces]}},
+            "a tuple of such values and the row",
+        ),
         (
             {"attributes": {"a": np.zeros(6)}},
             r"attributes\['a'\] must be numbers of shape \(V, k\)",
         ),
         ({"attributes": {"a": np.zeros((5, 2))}}, "needs one row per vertex .6., got 5"),
         ({"attributes": {"a": np.full((6, 1), np.nan)}}, "must be finite"),
-        ({"attributes": {"a": (np.eye(3), FINE.faces)}}, "indices from 0 to 2 into attributes"),
-        ({"attributes": {"a": (np.eye(6), FINE.faces[:7])}}, "one row per triangle .8., got 7"),
-        ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
+        (
+            {"attributes": {"a": (np.eye(3), GOOD_MESH.faces)}},
+            "indices from 0 to 2 into attributes",
+        ),
+        (
+            {"attributes": {"a": (np.eye(6), GOOD_MESH.faces[:7])}},
+            "one row per triangle .8., got 7",
+        ),
+        (
+            {"uv": np.zeros((3, 2)), "face_uv": GOOD_MESH.faces},
+            "face_uv must hold indices from 0 to 2",
+        ),
     ],
 )
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
@@ -151,7 +169,7 @@ def test_bad_binding(name, changes, text):
 
     The error names the fault, its place, and the allowed values.
     """
-    arguments = {"faces": FINE.faces, "rest_positions": FINE.vertices}
+    arguments = {"faces": GOOD_MESH.faces, "rest_positions": GOOD_MESH.vertices}
     arguments |= changes
     with pytest.raises(ValueError, match=text):
         refine.create(name, **arguments)
@@ -160,21 +178,21 @@ def test_bad_binding(name, changes, text):
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_binding_copies(name):
     """Later changes of the bound arrays have no effect, and binding changes no array."""
-    faces = FINE.faces.copy()
-    rest = FINE.vertices.copy()
+    faces = GOOD_MESH.faces.copy()
+    rest = GOOD_MESH.vertices.copy()
     refiner = refine.create(name, faces, rest)
-    deformed = FINE.vertices * 1.5
+    deformed = GOOD_MESH.vertices * 1.5
     expected = refiner.refine(deformed).positions.copy()
     faces[:] = 0
     rest[:] = 7.0
     assert (refiner.refine(deformed).positions == expected).all()
-    assert (deformed == FINE.vertices * 1.5).all()
+    assert (deformed == GOOD_MESH.vertices * 1.5).all()
 
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_splits_cannot_be_written(name):
     """The splits of the last frame are read-only."""
-    refiner = refine.create(name, FINE.faces, FINE.vertices)
+    refiner = refine.create(name, GOOD_MESH.faces, GOOD_MESH.vertices)
     assert refiner.splits.dtype == np.uint8
     assert refiner.splits.shape == (12,)
     with pytest.raises(ValueError, match="read-only"):
@@ -188,8 +206,8 @@ def test_no_triangles_in_none_out(name, faces):
 
     An empty list, which has no second dimension, is accepted.
     """
-    refiner = refine.create(name, faces, FINE.vertices)
-    assert len(refiner.refine(FINE.vertices).triangles) == 0
+    refiner = refine.create(name, faces, GOOD_MESH.vertices)
+    assert len(refiner.refine(GOOD_MESH.vertices).triangles) == 0
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
@@ -212,11 +230,11 @@ def test_units_of_length(unit, scheme):
 
 def test_frames_can_be_kept():
     """Deep copies and pickles of a frame have their own arrays, which no later frame changes."""
-    refiner = kahler(FINE, attributes={"rest": FINE.vertices}, threshold_once=0.0)
-    refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
+    refiner = kahler(GOOD_MESH, attributes={"rest": GOOD_MESH.vertices}, threshold_once=0.0)
+    refined = refiner.refine(GOOD_MESH.vertices * [1.0, 1.0, 4.0])
     kept = [copy.deepcopy(refined), pickle.loads(pickle.dumps(refined))]
     expected = refined.positions.copy(), refined.attributes["rest"].copy()
-    refiner.refine(FINE.vertices)
+    refiner.refine(GOOD_MESH.vertices)
     for mesh in kept:
         assert isinstance(mesh, refine.RefinedMesh)
         assert_array_equal(mesh.positions, expected[0])
@@ -251,18 +269,20 @@ def test_bad_options(options, text):
     The error names right values.
     """
     with pytest.raises(ValueError, match=text):
-        kahler(FINE, **options)
+        kahler(GOOD_MESH, **options)
 
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
 def test_an_object_serves_one_refiner(name):
     """A criterion or scheme that one refiner uses is refused by another, alone or in a list."""
     thing = refine.Displacement() if name == "criterion" else LoopScheme()
-    create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
+    create = partial(
+        refine.create, "kahler", GOOD_MESH.faces, GOOD_MESH.vertices, normals="refined"
+    )
     first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
         with pytest.raises(ValueError, match=r"serves another refiner already; make one for each"):
             create(**{name: shared})
-    first.refine(FINE.vertices)  # the refused call left it unchanged
+    first.refine(GOOD_MESH.vertices)  # the refused call left it unchanged
     del first
     create(**{name: thing})

@@ -9,7 +9,7 @@ from risorius import refine
 from tests import meshes
 
 Points = npt.NDArray[np.float64]
-STRAYS = {
+STRAY_POINTS = {
     "far": [900.0, -700.0, 40.0],
     "very far": [1e14, 0.0, 0.0],
     "too far": [1e200, 1.0, -1e20],
@@ -37,7 +37,7 @@ def with_strays(points, faces, place):
 
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
-@pytest.mark.parametrize("stray", STRAYS)
+@pytest.mark.parametrize("stray", STRAY_POINTS)
 def test_triangles_are_the_same(name, options, stray):
     """Triangles are equal to the last bit, at rest and in frames, and all output is finite."""
     mesh = meshes.irregular(4)
@@ -45,8 +45,8 @@ def test_triangles_are_the_same(name, options, stray):
     faces = mesh.faces.astype(np.int64)
     plain = refine.create(name, faces, mesh.vertices, **options)
     expected = plain.refine(bent, view=EYE)
-    rest, renamed = with_strays(mesh.vertices, faces, STRAYS[stray])
-    frame, _ = with_strays(bent, faces, STRAYS[stray])
+    rest, renamed = with_strays(mesh.vertices, faces, STRAY_POINTS[stray])
+    frame, _ = with_strays(bent, faces, STRAY_POINTS[stray])
     refiner = refine.create(name, renamed, rest, **options)
     found = refiner.refine(frame, view=EYE)
     assert_array_equal(found.positions[found.triangles], expected.positions[expected.triangles])
@@ -56,12 +56,12 @@ def test_triangles_are_the_same(name, options, stray):
     refine.check(refiner, found, frame)
 
 
-@pytest.mark.parametrize("stray", STRAYS)
+@pytest.mark.parametrize("stray", STRAY_POINTS)
 def test_welded_and_measured(stray):
     """Welding, detail and strain ignore unused points."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
-    rest, renamed = with_strays(mesh.vertices, faces, STRAYS[stray])
+    rest, renamed = with_strays(mesh.vertices, faces, STRAY_POINTS[stray])
     count = refine.WeldedRefiner(mesh.vertices, faces).refine(mesh.vertices).triangle_count
     assert refine.WeldedRefiner(rest, renamed).refine(rest).triangle_count == count
     scheme = refine.DetailScheme((rest, renamed))
@@ -73,7 +73,9 @@ def test_welded_and_measured(stray):
 def test_points_of_triangles_are_still_looked_at():
     """A used point must be a finite number; the error names only used points."""
     mesh = meshes.irregular(4)
-    rest, renamed = with_strays(mesh.vertices, mesh.faces.astype(np.int64), STRAYS["not a number"])
+    rest, renamed = with_strays(
+        mesh.vertices, mesh.faces.astype(np.int64), STRAY_POINTS["not a number"]
+    )
     refiner = refine.create("kahler", renamed, rest)
     broken = rest.copy()
     broken[renamed[7, 1], 1] = np.nan

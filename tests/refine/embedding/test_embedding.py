@@ -285,7 +285,7 @@ def test_inputs_stay_and_values_are_carried():
         assert not table.flags.writeable
 
 
-BAD: dict[str, tuple[dict[str, Any], str]] = {
+BAD_ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "no points": ({"points": [[0.0, 0.0]]}, "points must be numbers of shape (N, 3)"),
     "not finite": ({"points": [[0.0, np.nan, 0.0]]}, "points must be finite"),
     "few normals": ({"normals": np.ones((3, 3))}, "normals must be numbers of shape (2, 3)"),
@@ -316,7 +316,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
-@pytest.mark.parametrize(("changes", "message"), BAD.values(), ids=BAD)
+@pytest.mark.parametrize(("changes", "message"), BAD_ARGUMENTS.values(), ids=BAD_ARGUMENTS)
 def test_errors_say_what_is_allowed(changes, message):
     """Invalid input gives one clear message, and no embedding."""
     mesh = meshes.triangle()

@@ -12,7 +12,7 @@ from risorius.refine.kahler.frame import buffers_for
 from tests.refine.cases import configuration_of
 
 TABLES = coherence.sequence_tables()
-NUMBER = {sequence: k for k, sequence in enumerate(TABLES.sequences)}
+NUMBER_OF_SEQUENCE = {sequence: k for k, sequence in enumerate(TABLES.sequences)}
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
 
 
@@ -98,7 +98,7 @@ def test_taking_back_in_reverse(length):
 )
 def test_transitions_by_hand(sequence, splits, following, removed):
     """Removals in order and out of order, alone and together with new splits."""
-    state = NUMBER[sequence]
+    state = NUMBER_OF_SEQUENCE[sequence]
     configuration = configuration_of(splits)
     assert TABLES.sequences[TABLES.transitions[state, configuration]] == following
     assert TABLES.removals[state, configuration] == removed

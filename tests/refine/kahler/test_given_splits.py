@@ -11,7 +11,7 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import Forced, GivenMetric, edge_count_of, kahler, soups
 
-LOOKS: dict[str, dict[str, Any]] = {
+OPTIONS_OF_LOOKS: dict[str, dict[str, Any]] = {
     "paper": {},
     "paper, blended": {"blend": True},
     "paper, refined normals": {"normals": "refined"},
@@ -41,7 +41,7 @@ def clips(draw):
     return meshes.Mesh(positions, faces, uv, face_uv), frames
 
 
-@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize("look", OPTIONS_OF_LOOKS)
 @settings(max_examples=25, deadline=None)
 @given(clip=clips())
 def test_a_clip_of_any_triangles(look, clip):
@@ -52,9 +52,9 @@ def test_a_clip_of_any_triangles(look, clip):
     mesh, frames = clip
     inputs = [mesh.faces, mesh.vertices, *frames]
     before = [array.tobytes() for array in inputs]
-    changing = kahler(mesh, **LOOKS[look])
+    changing = kahler(mesh, **OPTIONS_OF_LOOKS[look])
     splits = refine.splits_of_clip(changing, frames)
-    fixed = kahler(mesh, splits=splits, **LOOKS[look])
+    fixed = kahler(mesh, splits=splits, **OPTIONS_OF_LOOKS[look])
     seen = []
     for frame in frames:
         refined = fixed.refine(frame)
@@ -69,7 +69,7 @@ def test_a_clip_of_any_triangles(look, clip):
     assert [array.tobytes() for array in inputs] == before
 
 
-@pytest.mark.parametrize("look", [name for name in LOOKS if name != "coherent"])
+@pytest.mark.parametrize("look", [name for name in OPTIONS_OF_LOOKS if name != "coherent"])
 def test_a_frame_has_the_bits_of_one_that_decides(look):
     """A frame with given splits equals a frame whose criterion makes the same splits, to the bit.
 
@@ -79,7 +79,7 @@ def test_a_frame_has_the_bits_of_one_that_decides(look):
     generator = np.random.default_rng(8)
     splits = generator.integers(0, 3, edge_count_of(mesh))
     heat = {"heat": generator.random((len(mesh.vertices), 1))}
-    options = {**LOOKS[look], "attributes": heat}
+    options = {**OPTIONS_OF_LOOKS[look], "attributes": heat}
     fixed = kahler(mesh, splits=splits, **options)
     grown = np.where(splits > 0, splits, -np.inf)
     deciding = kahler(mesh, criterion=GivenMetric(grown), **options)

@@ -31,11 +31,11 @@ def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
     assert_equals_twin(refiner, refined, twin, normals_cancel=normals_cancel)
 
 
-@pytest.mark.parametrize("name", meshes.NAMED)
+@pytest.mark.parametrize("name", meshes.NAMED_MESHES)
 @pytest.mark.parametrize("amplitude", [0.2, 0.8])
 def test_named_meshes(name, amplitude):
     """Every test mesh, deformed, passes the checker and equals the twin's result."""
-    mesh = meshes.NAMED[name]()
+    mesh = meshes.NAMED_MESHES[name]()
     for seed in range(6):
         deformed = meshes.wrinkled(mesh, seed, amplitude)
         refiner, refined = refine_and_check(mesh, deformed, threshold_once=0.01)

@@ -7,7 +7,7 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import kahler
 
-OPTIONS = {
+OPTIONS_OF_REFINERS = {
     "paper": {},
     "blended": {"blend": True},
     "cubic": {"scheme": "cubic"},
@@ -16,7 +16,7 @@ OPTIONS = {
     "detail, not blended": {"scheme": "detail", "blend": False},
 }
 SCALES = (1e-300, 1e-44, 1e-38, 1e-22, 1e-12, 3e-10, 1e-6, 1.0, 5e9, 5e13)
-FLATTENED = (1.0, 1e-7, 1e-20, 0.0)
+HEIGHT_FACTORS = (1.0, 1e-7, 1e-20, 0.0)
 
 
 def lengths(normals):
@@ -24,17 +24,17 @@ def lengths(normals):
     return np.linalg.norm(normals.astype(np.float64), axis=1)
 
 
-@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize("name", OPTIONS_OF_REFINERS)
 def test_unit_or_zero(name):
     """In tiny, huge and flattened meshes each normal has length one or zero, and all are finite."""
     mesh = meshes.irregular(3)
-    options = dict(OPTIONS[name])
+    options = dict(OPTIONS_OF_REFINERS[name])
     if options.get("scheme") == "detail":
         finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
         options["scheme"] = refine.DetailScheme((finer.positions, finer.triangles))
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.01, **options)
     for scale in SCALES:
-        for flattened in FLATTENED:
+        for flattened in HEIGHT_FACTORS:
             deformed = scale * meshes.wrinkled(mesh, 2, 0.3) * [1.0, 1.0, flattened]
             refined = refiner.refine(deformed)
             found = lengths(refined.normals)

@@ -13,9 +13,9 @@ from risorius.refine.mesh import threads
 from tests import meshes
 
 ROOT = Path(__file__).resolve().parents[3]
-LOOK = {"scheme": "cubic", "criterion": "displacement+rest"}
-OPTIONS = {
-    "look": LOOK,
+LOOK_OPTIONS = {"scheme": "cubic", "criterion": "displacement+rest"}
+OPTIONS_OF_REFINERS = {
+    "look": LOOK_OPTIONS,
     "paper": {},
     "coherent": {"coherent": True},
     "loop, refined": {"blend": True, "normals": "refined"},
@@ -30,13 +30,15 @@ def force_threads(monkeypatch, count):
     monkeypatch.setattr(threads, "THREAD_COUNT", count)
 
 
-@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize("name", OPTIONS_OF_REFINERS)
 @pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
 def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
     """Frames made by one, two and three threads have the same bits, also with seams and debris."""
     refiner = "none" if name == "none" else "kahler"
     bound = [
-        refine.create(refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS[name])
+        refine.create(
+            refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS_OF_REFINERS[name]
+        )
         for _ in range(3)
     ]
     for seed in range(4):
@@ -80,7 +82,7 @@ def test_small_meshes_start_no_thread(head, monkeypatch):
         raise AssertionError("a thread was started")
 
     monkeypatch.setattr(threads, "_threads", refuse)
-    refiner = refine.create("kahler", head.faces, head.vertices, **LOOK)
+    refiner = refine.create("kahler", head.faces, head.vertices, **LOOK_OPTIONS)
     assert refiner.refine(1.01 * head.vertices).triangle_count > len(head.faces)
     monkeypatch.setattr(threads, "THREAD_COUNT", 1)
     threads.parallel_for(lambda first, last: None, 1_000_000)
@@ -89,7 +91,7 @@ def test_small_meshes_start_no_thread(head, monkeypatch):
         threads.parallel_for(lambda first, last: None, 1_000_000)
 
 
-FORKED = """
+FORKED_PROGRAM = """
 import os
 from risorius import refine
 from risorius.refine.mesh import threads
@@ -110,7 +112,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_forked_processes_have_their_own_threads():
     """A forked child refines like its parent, although it does not have the parent's threads."""
-    code = FORKED.replace("{LOOK}", repr(LOOK))
+    code = FORKED_PROGRAM.replace("{LOOK}", repr(LOOK_OPTIONS))
     done = subprocess.run(
         [sys.executable, "-W", "ignore::DeprecationWarning", "-c", code],
         cwd=ROOT, capture_output=True, text=True, timeout=300, check=False,
