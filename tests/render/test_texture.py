@@ -175,7 +175,9 @@ def test_skin_without_oil_is_dull(surface):
     shine = {}
     for name, oil in (("half", half), ("full", None)):
         frames = [
-            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4), oil=oil)
+            textured(
+                surface, image, replace(PLAIN_STYLE, gloss=gloss), shape=square(bulge=0.4), oil=oil
+            )
             for gloss in (0.0, 1.0)
         ]
         shine[name] = (frames[1] - frames[0]).astype(int)
