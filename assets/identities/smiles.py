@@ -57,7 +57,7 @@ def smiling(layers: tuple[Layer, ...], smile: Smile) -> tuple[Layer, ...]:
             "AU10": 0.75 * smile.lift,
             "orbicularis_oris_roll_upper": 0.2 * smile.curl,
             "AU20": 0.25 * smile.spread,
-            "AU25": 0.25 * smile.drop,
+            "AU25": 0.1 * smile.drop,
             "AU26": 0.22 * smile.drop,
         },
     }
