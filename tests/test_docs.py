@@ -63,6 +63,23 @@ def test_places_in_the_paper_page_exist():
         assert re.search(defined, code, re.MULTILINE), (file, name)
 
 
+def test_classes_and_files_of_the_architecture_exist():
+    """Every class and every file or folder that docs/architecture.md names exists."""
+    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    sources = tracked(".", "*.py")
+    code = "\n".join(path.read_text("utf-8") for path in sources)
+    classes = re.findall(r"`(?:\w+\.)?([A-Z][a-z]\w+)(?:\.\w+)?`", page)
+    assert len(classes) > 15
+    for name in classes:
+        assert re.search(rf"^ *class {name}\b", code, re.MULTILINE), name
+    paths = re.findall(r"`([\w/]+(?:\.py|/))`", page)
+    assert len(paths) > 40
+    places = [f"/{path.relative_to(ROOT).as_posix()}" for path in sources]
+    for name in paths:
+        is_there = any(f"/{name}" in place for place in places)
+        assert is_there, name
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_are_known(page):
     """Every command on a page accepts the options shown with it."""

@@ -58,7 +58,7 @@ def batch(
     """Run a list of commands in parallel.
 
     LIST is a text file. Each line is a capture, export or convert command without the word
-    risorius; lines that begin with # are ignored. Relative paths begin in the current folder. All
+    risorius; lines that begin with # are ignored. Paths are relative to the current folder. All
     lines are checked before the first one runs.
     """
     from tqdm import tqdm
@@ -138,14 +138,14 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
         arguments.insert(0, "--overwrite")  # existing files are from an earlier attempt
     assert command.callback is not None
     return Job(
-        number,
-        text,
-        f"{command.callback.__module__}:{command.callback.__name__}",
-        tuple(arguments),
-        Path.cwd(),
-        tuple(path.absolute() for path in inputs),
-        tuple(path.absolute() for path in outputs),
-        logs / f"line_{number:04d}.log",
+        number=number,
+        text=text,
+        command=f"{command.callback.__module__}:{command.callback.__name__}",
+        arguments=tuple(arguments),
+        folder=Path.cwd(),
+        inputs=tuple(path.absolute() for path in inputs),
+        outputs=tuple(path.absolute() for path in outputs),
+        log=logs / f"line_{number:04d}.log",
     )
 
 

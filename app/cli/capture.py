@@ -75,8 +75,8 @@ class Filming:
         "--alive/--not-alive",
         default=None,
         help="Add idle life: eyes blink and look at the camera, and the head nods with speech, "
-        "unless the script moves them. By default scripts with alive = true get it, and recordings "
-        "without motion of the head.",
+        "unless the script moves them. By default, scripts with alive = true and recordings "
+        "without motion of the head have it.",
     )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")

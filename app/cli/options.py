@@ -260,7 +260,7 @@ PLAYBACK_OPTIONS = (
         type=FiniteRange(0, 0.5),
         default=LEAD_TIME,
         show_default=True,
-        help="Time by which muscles move before the recording [s], because skin follows them late.",
+        help="Time [s] by which muscles move ahead of the recording, because skin follows late.",
     ),
     click.option("--face", metavar="ID", help="The face to read, if the file has several."),
     click.option(

@@ -16,7 +16,7 @@ from risorius import __version__
 from risorius.app.text import in_one_line
 
 from ..report import print_progress, processor, table
-from .experiments import EXPERIMENTS, Result
+from .experiments import EXPERIMENTS, ExperimentResult
 
 PATH_TYPE = click.Path(path_type=Path)
 
@@ -29,7 +29,13 @@ PATH_TYPE = click.Path(path_type=Path)
     type=click.Choice(["all", *(experiment.name for experiment in EXPERIMENTS)]),
 )
 @click.option(
-    "-o", "--output", "folder", type=PATH_TYPE, default=Path("out/reproduce"), show_default=True
+    "-o",
+    "--output",
+    "folder",
+    type=PATH_TYPE,
+    default=Path("out/reproduce"),
+    show_default=True,
+    help="The folder to write.",
 )
 @click.option("--rounds", type=click.IntRange(3, 10_000), help="Rounds of timing; by default 60.")
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
@@ -63,7 +69,7 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
         sys.exit(1)
 
 
-def _text(result: Result) -> str:
+def _text(result: ExperimentResult) -> str:
     """The report of an experiment."""
     rows = [
         (claim.verdict(x), claim.value, claim.paper, claim.ours(x), claim.allowed)
@@ -78,7 +84,7 @@ def _text(result: Result) -> str:
     return "\n".join([*above, *table(columns, rows), *reasons])
 
 
-def _page(results: Sequence[Result]) -> str:
+def _page(results: Sequence[ExperimentResult]) -> str:
     """All results on one HTML page; it loads the pictures from its own folder."""
     findings = [finding for result in results for finding in result.findings]
     met = sum(claim.verdict(measured) == "met" for claim, measured in findings)
