@@ -14,7 +14,7 @@ from .text import in_one_line
 
 
 class UserError(Exception):
-    """An unusable input of the user; the text names fault, place and allowed values.
+    """Input of the user that cannot be used; the text names fault, place and allowed values.
 
     trace: the traceback of another process that raised it, if any.
     """

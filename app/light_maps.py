@@ -74,7 +74,7 @@ def _light_of(name: str, reading: int) -> SceneLight:
 def read_light_map(path: Path) -> render.LightMap:
     """Read a light map, reduced to (128, 256) texels; raise UserError for an unusable file."""
     check_light_map(path)
-    with _refused(path):
+    with _errors_refused(path):
         pixels = _openexr(path) if _is_openexr(path) else _radiance(_content(path))
     pixels = np.nan_to_num(pixels, nan=0.0, posinf=0.0).clip(0.0, None)
     if not pixels.any():
@@ -93,7 +93,7 @@ def check_light_map(path: Path) -> None:
     if path.suffix.lower() not in LIGHT_SUFFIXES:
         raise UserError(f"{path}: is not a light map; give a file {' or '.join(LIGHT_SUFFIXES)}")
     header = _content(path, first=2**16)
-    with _refused(path):
+    with _errors_refused(path):
         if _is_openexr(path):
             height, width = _openexr_size(path)
         else:
@@ -116,7 +116,7 @@ def _content(path: Path, first: int | None = None) -> bytes:
 
 
 @contextlib.contextmanager
-def _refused(path: Path) -> Iterator[None]:
+def _errors_refused(path: Path) -> Iterator[None]:
     """Turn the errors of a broken file into a UserError that names it."""
     try:
         yield
@@ -144,12 +144,12 @@ def _radiance(content: bytes) -> Pixels:
     if len(data) == 4 * height * width:
         rgbe = data.reshape(height, width, 4)
     else:
-        rgbe = _unpacked(data, height, width)
+        rgbe = _unpacked_lines(data, height, width)
     scale = np.ldexp(np.float32(1.0), rgbe[..., 3:].astype(np.int32) - 136)
     return np.asarray(np.where(rgbe[..., 3:] > 0, rgbe[..., :3] * scale, 0.0), np.float32)
 
 
-def _unpacked(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
+def _unpacked_lines(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
     """Decode lines of four run-length encoded channels; shape (H, W, 4)."""
     most_alike = 127  # equal bytes in a run, which takes two bytes
     if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):

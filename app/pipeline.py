@@ -19,7 +19,7 @@ import numpy as np
 from risorius import render
 from risorius.geometry.arrays import Integers64
 
-from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Dissection
+from .anatomy import SKIN_ALONE, AnatomyView, Dissection, DrawnAnatomy
 from .refining.drawn_mesh import DrawnMesh, bind
 from .refining.presets import Refinement
 from .refining.wrinkling import Compression, Wrinkling
@@ -47,7 +47,7 @@ class Pipeline:
     def __init__(self, scene: Drawable, renderer: render.Renderer) -> None:
         self.scene = scene
         self.renderer = renderer
-        self.anatomy = Anatomy(scene)
+        self.anatomy = DrawnAnatomy(scene)
         self.maps = render.NO_MAPS
         self._compression: Compression | None = None
         self._fading = _around_fading(scene)

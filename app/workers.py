@@ -34,7 +34,7 @@ MOST_ATTEMPTS = 3  # number of attempts at a piece of work whose process dies
 GRACE_TIME = 5.0  # [s] for a process to clean up before it is killed
 
 
-class Kind(Enum):
+class AnswerKind(Enum):
     """Kinds of answers from a process: messages of its work, then success or failure."""
 
     MESSAGE = 1
@@ -93,11 +93,11 @@ class Worker:
                 code = self.process.returncode
                 why = signal.Signals(-code).name if code < 0 else f"exit code {code}"
                 raise DiedError(why) from None
-            if kind is Kind.MESSAGE:
+            if kind is AnswerKind.MESSAGE:
                 yield content
                 continue
             self.close()
-            if kind is Kind.FAILED:
+            if kind is AnswerKind.FAILED:
                 raise UserError(*content)
             return
 
@@ -141,7 +141,9 @@ def serve() -> None:
     writer = threading.Thread(target=hand_over)
     writer.start()
     threading.Thread(target=end_with_parent, daemon=True).start()
-    end = _outcome(*request, send=lambda each: waiting.put(pickle.dumps((Kind.MESSAGE, each))))
+    end = _outcome(
+        *request, send=lambda each: waiting.put(pickle.dumps((AnswerKind.MESSAGE, each)))
+    )
     waiting.put(pickle.dumps(end))
     waiting.put(b"")
     writer.join()
@@ -149,7 +151,7 @@ def serve() -> None:
 
 def _outcome(
     work: Callable[..., object], arguments: Sequence[Any], *, send: Send
-) -> tuple[Kind, tuple[str, str]]:
+) -> tuple[AnswerKind, tuple[str, str]]:
     """Do the work; return DONE, or FAILED with the reason in one line and the traceback."""
     try:
         work(*arguments, send)
@@ -158,8 +160,8 @@ def _outcome(
         if line is None:  # a defect
             traceback.print_exc()
             line = in_one_line(f"{type(error).__name__}: {error}")
-        return Kind.FAILED, (line, traceback_of(error))
-    return Kind.DONE, ("", "")
+        return AnswerKind.FAILED, (line, traceback_of(error))
+    return AnswerKind.DONE, ("", "")
 
 
 class WorkerPool:
@@ -262,7 +264,7 @@ def run_all(
             pool.stop()
 
 
-class Task:
+class BackgroundWork:
     """Work that plays frames in a process, while the calling process stays free."""
 
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):

@@ -22,7 +22,7 @@ import numpy as np
 from ..geometry.arrays import Flags, Floats64, Integers64, Unsigned8
 from .gltf_file import GltfFile, entry
 from .gltf_painter import GltfPainter
-from .pictures import Texture
+from .pictures import MeshPictures
 from .topology import strip_triangles, unique_points
 
 
@@ -41,7 +41,7 @@ class GltfSurface:
     faces: Integers64
     same: Integers64
     corners: Integers64
-    texture: Texture | None
+    texture: MeshPictures | None
     colours: Unsigned8 | None
     has_colour: Flags
 
@@ -104,7 +104,7 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
     texture = None
     if reader.painter.pictures:
         uv = np.vstack([piece.uv for piece in pieces])
-        texture = Texture(
+        texture = MeshPictures(
             np.nan_to_num(uv).astype(np.float32),
             corners.astype(np.int32),
             picture.astype(np.int64),
@@ -117,13 +117,13 @@ def read_gltf(content: bytes, folder: Path) -> GltfSurface:
             colours[place] = piece.colours
     is_coloured = any(piece.colours is not None for piece in pieces)
     return GltfSurface(
-        np.vstack([np.zeros((0, 3)), *(piece.seen for piece in pieces)]),
-        faces,
-        same,
-        corners,
-        texture,
-        np.vstack(colours) if is_coloured else None,
-        np.concatenate([np.zeros(0, np.bool_), *has_colour]),
+        vertices=np.vstack([np.zeros((0, 3)), *(piece.seen for piece in pieces)]),
+        faces=faces,
+        same=same,
+        corners=corners,
+        texture=texture,
+        colours=np.vstack(colours) if is_coloured else None,
+        has_colour=np.concatenate([np.zeros(0, np.bool_), *has_colour]),
     )
 
 
@@ -132,13 +132,13 @@ def stored_pieces(content: bytes, folder: Path) -> list[StoredPiece]:
     reader = _Reader(GltfFile(content, folder))
     return [
         StoredPiece(
-            each.node,
-            each.mesh,
-            each.primitive,
-            len(each.seen),
-            each.to_scene,
-            each.faces[:, ::-1] if each.is_turned else each.faces,
-            reader.name_of(each.node),
+            node=each.node,
+            mesh=each.mesh,
+            primitive=each.primitive,
+            count=len(each.seen),
+            to_scene=each.to_scene,
+            triangles=each.faces[:, ::-1] if each.is_turned else each.faces,
+            name=reader.name_of(each.node),
         )
         for each in reader.pieces()
     ]
@@ -185,7 +185,7 @@ class _Reader:
         if document.scenes:
             waiting = [*(document.scenes[document.scene or 0].nodes or [])]
         else:
-            children = {child for node in document.nodes for child in node.children or []}
+            children = {child for node in document.nodes for child in node.children or ()}
             waiting = [number for number in range(len(document.nodes)) if number not in children]
         found: dict[int, None] = {}
         while waiting:
@@ -227,18 +227,18 @@ class _Reader:
         colours = self.painter.colours(attributes, factor)
         turned = np.ascontiguousarray(faces[:, ::-1]) if is_turned else faces
         return _Piece(
-            number,
-            node.mesh,
-            which,
-            to_scene,
-            stored,
-            seen,
-            motion,
-            turned,
-            is_turned,
-            picture,
-            uv,
-            colours,
+            node=number,
+            mesh=node.mesh,
+            primitive=which,
+            to_scene=to_scene,
+            stored=stored,
+            seen=seen,
+            motion=motion,
+            faces=turned,
+            is_turned=is_turned,
+            picture=picture,
+            uv=uv,
+            colours=colours,
         )
 
     def _bent(
@@ -303,8 +303,10 @@ def _moved(points: Floats64, matrices: Floats64) -> Floats64:
 
 def _node_matrices(nodes: list[Any]) -> list[Floats64]:
     """The matrix of each node to the scene, (4, 4)."""
-    parents = {child: number for number, node in enumerate(nodes) for child in node.children or []}
-    local = [_local(node) for node in nodes]
+    parents = {}
+    for number, node in enumerate(nodes):
+        parents.update(dict.fromkeys(node.children or (), number))
+    local = [_local_matrix(node) for node in nodes]
     found = []
     for number in range(len(nodes)):
         matrix = local[number]
@@ -320,7 +322,7 @@ def _node_matrices(nodes: list[Any]) -> list[Floats64]:
     return found
 
 
-def _local(node: Any) -> Floats64:
+def _local_matrix(node: Any) -> Floats64:
     """The matrix of a node to its parent, (4, 4)."""
     from scipy.spatial.transform import Rotation  # imported late, so that loading a head is fast
 

@@ -47,7 +47,7 @@ class GltfPainter:
         if coordinates is None:
             return -1, nowhere, factor
         texture = self._document.textures[entry(info, "index")]
-        uv = _placed(self._file.values(coordinates).astype(np.float64), placing)
+        uv = _transformed_uv(self._file.values(coordinates).astype(np.float64), placing)
         if texture.sampler is not None:
             sampler = self._document.samplers[texture.sampler]
             for axis, way in enumerate((sampler.wrapS, sampler.wrapT)):
@@ -108,7 +108,7 @@ def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
     return (info if is_there else None), tint
 
 
-def _placed(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
+def _transformed_uv(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
     """Texture coordinates, v down, moved by KHR_texture_transform.
 
     They are scaled, then turned counter-clockwise as seen with v down, then shifted.

@@ -22,7 +22,7 @@ from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned8
 from ..geometry.read_only import make_read_only
 from .errors import AssetError
 from .gltf import read_gltf
-from .pictures import Texture, texture_of
+from .pictures import MeshPictures, texture_of
 from .ply import read_ply
 from .topology import unique_points
 from .user_files import MOST_FILE_VERTICES, named, plain_text, read_file
@@ -50,7 +50,7 @@ class Mesh:
 
     vertices: Floats64
     faces: Integers32
-    texture: Texture | None = None
+    texture: MeshPictures | None = None
     colours: Unsigned8 | None = None
     has_colour: Flags | None = None
     same: npt.NDArray[np.integer[Any]] | None = None
@@ -106,13 +106,13 @@ def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
     if suffix in ("glb", "gltf"):
         shown = read_gltf(content, folder)
         return Mesh(
-            shown.vertices,
-            _numbers(shown.faces),
-            shown.texture,
-            shown.colours,
-            shown.has_colour,
-            shown.same,
-            _numbers(shown.corners),
+            vertices=shown.vertices,
+            faces=_numbers(shown.faces),
+            texture=shown.texture,
+            colours=shown.colours,
+            has_colour=shown.has_colour,
+            same=shown.same,
+            corners=_numbers(shown.corners),
         )
     vertices, faces = _read_by_trimesh(content, suffix)
     if suffix == "stl":

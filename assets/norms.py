@@ -11,7 +11,7 @@ from .data_files import read_toml
 
 
 @dataclass(frozen=True)
-class Sample:
+class NormSample:
     """Mean and deviation of one sex in a published sample [mm]."""
 
     mean: float
@@ -26,8 +26,8 @@ class Sample:
 class Norm:
     """A measure of both sexes."""
 
-    women: Sample
-    men: Sample
+    women: NormSample
+    men: NormSample
 
 
 NORM_ROWS = read_toml(Path(__file__).with_name("norms.toml"))
@@ -35,7 +35,7 @@ LANDMARK_PAIRS: dict[str, tuple[str, str]] = {
     code: (*row["points"],) for code, row in NORM_ROWS.items()
 }
 NORMS = {
-    code: Norm(Sample(*row["women"]), Sample(*row["men"]))
+    code: Norm(NormSample(*row["women"]), NormSample(*row["men"]))
     for code, row in NORM_ROWS.items()
     if "women" in row
 }
@@ -53,9 +53,10 @@ def measures_of(vertices: Floats64, anatomy: Mapping[str, int]) -> dict[str, flo
 
     names = {name for pair in LANDMARK_PAIRS.values() for name in pair}
     right = {name: name.replace("_left", "_right") for name in names}
-    return {
-        code: between(a, b)
-        if "_right" in a + b
-        else 0.5 * (between(a, b) + between(right[a], right[b]))
-        for code, (a, b) in LANDMARK_PAIRS.items()
-    }
+    measures = {}
+    for code, (first, second) in LANDMARK_PAIRS.items():
+        distance = between(first, second)
+        if "_right" not in first + second:
+            distance = 0.5 * (distance + between(right[first], right[second]))
+        measures[code] = distance
+    return measures

@@ -67,21 +67,29 @@ def read_painted(path: Path) -> PaintedMesh:
     if path.suffix.lower() == ".obj":
         surface = read_obj(read_file(path, kind="mesh", most=100), most=MOST_FILE_VERTICES)
         return PaintedMesh(
-            mesh,
-            surface.uv,
-            _valid_indices(surface.face_uv, len(surface.uv)),
-            surface.normals,
-            _valid_indices(surface.face_normals, len(surface.normals)),
-            surface.material,
-            tuple(_materials(surface, path.parent)),
-            surface.part if surface.parts else surface.material,
-            surface.parts or surface.materials,
-            tuple(libraries_of(surface.libraries, path.parent)),
+            mesh=mesh,
+            uv=surface.uv,
+            face_uv=_valid_indices(surface.face_uv, len(surface.uv)),
+            normals=surface.normals,
+            face_normals=_valid_indices(surface.face_normals, len(surface.normals)),
+            material=surface.material,
+            materials=tuple(_materials(surface, path.parent)),
+            part=surface.part if surface.parts else surface.material,
+            parts=surface.parts or surface.materials,
+            libraries=tuple(libraries_of(surface.libraries, path.parent)),
         )
     none = np.full(mesh.faces.shape, -1, np.int64)
     of_triangles = none[:, 0]
     return PaintedMesh(
-        mesh, np.zeros((0, 2)), none, np.zeros((0, 3)), none, of_triangles, (), of_triangles, ()
+        mesh=mesh,
+        uv=np.zeros((0, 2)),
+        face_uv=none,
+        normals=np.zeros((0, 3)),
+        face_normals=none,
+        material=of_triangles,
+        materials=(),
+        part=of_triangles,
+        parts=(),
     )
 
 

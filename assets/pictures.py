@@ -30,7 +30,7 @@ KTX2_MAGIC = b"\xabKTX 20\xbb\r\n\x1a\n"  # first bytes of a KTX 2 file
 
 
 @dataclass(frozen=True)
-class Texture:
+class MeshPictures:
     """Pictures of a mesh, and texture coordinates.
 
     - uv: texture coordinates, v up, shape (U, 2), float32.
@@ -45,7 +45,7 @@ class Texture:
     pictures: tuple[Callable[[], Image], ...]
 
 
-def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
+def texture_of(surface: ObjSurface, folder: Path) -> tuple[MeshPictures | None, tuple[str, ...]]:
     """Return the texture of an OBJ file from its material libraries; None without a picture.
 
     It also returns a note for each missing library, because many files lack them.
@@ -74,7 +74,7 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
     placings = sorted({each.placing for each in used})
     uv = np.vstack([placing.placed(surface.uv) for placing in placings])
     rows = np.array([placings.index(each.placing) for each in used])[np.maximum(picture, 0)]
-    texture = Texture(
+    texture = MeshPictures(
         uv.astype(np.float32),
         (np.maximum(surface.face_uv, 0) + len(surface.uv) * rows[:, None]).astype(np.int32),
         picture,
@@ -130,7 +130,7 @@ def decoded(content: bytes, name: str) -> Image:
         with warnings.catch_warnings():  # Pillow warns of pictures that decompress to gigabytes
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(content), formats=("PNG", "JPEG", "WEBP")) as picture:
-                return _shrunk(picture)
+                return _shrunk_picture(picture)
     except Exception as error:  # the formats of Pillow raise different kinds of errors
         reason = " ".join(str(error).split())[:200]
         raise AssetError(
@@ -179,7 +179,7 @@ def tinted(picture: Image, factor: Sequence[float]) -> Image:
     return np.stack(channels, axis=-1)
 
 
-def _shrunk(picture: Any) -> Image:
+def _shrunk_picture(picture: Any) -> Image:
     """Return an opened Pillow picture in the form of `decoded`."""
     import PIL.Image
 

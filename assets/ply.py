@@ -69,9 +69,9 @@ def read_ply(content: bytes) -> PlySurface:
     vertices = np.column_stack([points[axis] for axis in "xyz"]).astype(np.float64)
     faces = [np.zeros((0, 3), np.int64)]
     if "face" in read:
-        faces.append(_fans(_corners(read["face"])))
+        faces.append(_fan_triangles(_corners(read["face"])))
     if "tristrips" in read:
-        faces += _strips(_corners(read["tristrips"]))
+        faces += _strip_triangles(_corners(read["tristrips"]))
     return PlySurface(vertices, np.vstack(faces), _colours(points))
 
 
@@ -218,7 +218,7 @@ def _corners(columns: dict[str, Any]) -> _Lists:
     return _Lists(found.lengths, found.values.astype(np.int64))
 
 
-def _fans(polygons: _Lists) -> Integers64:
+def _fan_triangles(polygons: _Lists) -> Integers64:
     """Triangles around the first corner of each polygon, shape (F, 3)."""
     starts = np.cumsum(polygons.lengths) - polygons.lengths
     counts = np.maximum(polygons.lengths - 2, 0)
@@ -229,7 +229,7 @@ def _fans(polygons: _Lists) -> Integers64:
     return triangles
 
 
-def _strips(strips: _Lists) -> list[Integers64]:
+def _strip_triangles(strips: _Lists) -> list[Integers64]:
     """The triangles of each strip; a number below 0 ends a strip within a list."""
     ends = np.cumsum(strips.lengths)
     parts = np.split(strips.values, ends[:-1])

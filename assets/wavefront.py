@@ -86,13 +86,13 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                         corners.extend(corner)
                     labels.extend(current)
             elif word == b"usemtl":  # names may hold blanks and number signs
-                current[0] = materials.setdefault(_parted(line.decode())[1], len(materials))
+                current[0] = materials.setdefault(_first_word(line.decode())[1], len(materials))
             elif word in (b"o", b"g"):
-                current[1] = parts.setdefault(_parted(line.decode())[1], len(parts))
+                current[1] = parts.setdefault(_first_word(line.decode())[1], len(parts))
             elif word == b"mtllib":
-                libraries.append(_parted(line.decode())[1])
+                libraries.append(_first_word(line.decode())[1])
         except (ValueError, IndexError, OverflowError):
-            raise _unusable(number, line) from None
+            raise _error_about_line(number, line) from None
         if max(len(coordinates), len(normals), len(corners) // 3, len(places)) > 3 * most:
             raise AssetError(
                 f"line {number}: more than {most} vertices or triangles; reduce it in a modelling "
@@ -100,21 +100,21 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
             )
     numbers = np.frombuffer(corners, np.int64).reshape(-1, 3, 3)
     return ObjSurface(
-        np.frombuffer(coordinates, np.float64).reshape(-1, 3),
-        np.ascontiguousarray(numbers[:, :, 0]),
-        np.frombuffer(places, np.float64).reshape(-1, 2),
-        np.ascontiguousarray(numbers[:, :, 1]),
-        np.frombuffer(normals, np.float64).reshape(-1, 3),
-        np.ascontiguousarray(numbers[:, :, 2]),
-        np.frombuffer(labels, np.int64)[::2],
-        tuple(materials),
-        tuple(libraries),
-        np.frombuffer(labels, np.int64)[1::2],
-        tuple(parts),
+        vertices=np.frombuffer(coordinates, np.float64).reshape(-1, 3),
+        faces=np.ascontiguousarray(numbers[:, :, 0]),
+        uv=np.frombuffer(places, np.float64).reshape(-1, 2),
+        face_uv=np.ascontiguousarray(numbers[:, :, 1]),
+        normals=np.frombuffer(normals, np.float64).reshape(-1, 3),
+        face_normals=np.ascontiguousarray(numbers[:, :, 2]),
+        material=np.frombuffer(labels, np.int64)[::2],
+        materials=tuple(materials),
+        libraries=tuple(libraries),
+        part=np.frombuffer(labels, np.int64)[1::2],
+        parts=tuple(parts),
     )
 
 
-def _unusable(number: int, line: bytes) -> AssetError:
+def _error_about_line(number: int, line: bytes) -> AssetError:
     """The error about a line, with its number."""
     excerpt_length = 30  # bytes
     shown = line[:excerpt_length].decode(errors="ignore").strip()
@@ -139,11 +139,13 @@ def _polygon(fields: list[bytes], counts: tuple[int, int, int]) -> list[tuple[in
         if not vertex or vertex < -counts[0]:
             raise ValueError
         vertex = vertex - 1 if vertex > 0 else counts[0] + vertex
-        polygon.append((vertex, _optional(place, counts[1]), _optional(normal, counts[2])))
+        polygon.append(
+            (vertex, _optional_index(place, counts[1]), _optional_index(normal, counts[2]))
+        )
     return polygon
 
 
-def _optional(number: int, count: int) -> int:
+def _optional_index(number: int, count: int) -> int:
     """The index of texture coordinates or of a normal, from 0; -1 for none."""
     return number - 1 if number >= 0 else max(count + number, -1)
 
@@ -179,7 +181,7 @@ def looks_of(content: bytes) -> dict[str, MaterialLook]:
     looks: dict[str, MaterialLook] = {}
     material = ""
     for line in joined_lines(content).decode().split("\n"):
-        word, rest = _parted(line)
+        word, rest = _first_word(line)
         numbers = [float(each) for each in rest.split() if _is_number(each)]
         look = looks.get(material, MaterialLook())
         if word == "newmtl":
@@ -206,7 +208,7 @@ def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
     pictures = {}
     material = ""
     for line in joined_lines(content).decode().split("\n"):
-        word, rest = _parted(line)
+        word, rest = _first_word(line)
         if word == "newmtl":
             material = rest
         elif word.lower() == "map_kd" and rest:
@@ -219,7 +221,7 @@ def maps_of(content: bytes) -> list[str]:
     kinds = ("map_", "bump", "disp", "decal", "refl", "norm")
     names = []
     for line in joined_lines(content).decode().split("\n"):
-        word, rest = _parted(line)
+        word, rest = _first_word(line)
         if word.lower().startswith(kinds) and rest:
             names.append(_picture_of(rest).name)
     return names
@@ -228,7 +230,7 @@ def maps_of(content: bytes) -> list[str]:
 def _picture_of(rest: str) -> MaterialPicture:
     """The picture of a map: options, and then a name, which may hold blanks and be quoted."""
     values: dict[str, list[str]] = {}
-    option, after = _parted(rest)
+    option, after = _first_word(rest)
     option_words = {  # numbers of words after each option, including these
         **dict.fromkeys(PLACING_OPTIONS, 3),
         "-mm": 2,
@@ -239,12 +241,12 @@ def _picture_of(rest: str) -> MaterialPicture:
         rest = after
         values[option] = []
         for _ in range(option_words[option]):
-            value, after = _parted(rest)
+            value, after = _first_word(rest)
             if not after or (option in PLACING_OPTIONS and not _is_number(value)):
                 break  # two of three numbers may be missing, and the last word is the name
             values[option].append(value)
             rest = after
-        option, after = _parted(rest)
+        option, after = _first_word(rest)
     is_quoted = len(rest) > 2 and rest[0] == rest[-1] == '"'
     placing = Placing(
         _along_u_and_v(values.get("-s", []), 1.0),
@@ -268,7 +270,7 @@ def _is_number(word: str) -> bool:
         return False
 
 
-def _parted(line: str) -> tuple[str, str]:
+def _first_word(line: str) -> tuple[str, str]:
     """The first word of a line, and the rest, without surrounding blanks and tabs.
 
     Other blanks, such as Japanese ones, belong to names.

@@ -47,7 +47,7 @@ class HeadFile(NamedTuple):
     landmarks: Path
 
 
-class Row(NamedTuple):
+class AvatarRow(NamedTuple):
     """One avatar.
 
     vertices: number in the head's file, or in its skin if it has no file. in_place: number of these
@@ -85,7 +85,7 @@ def scan(scans: Scans, folder: Path) -> HeadFile:
     return head
 
 
-def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
+def measure(folder: Path | None, reference: Path | None) -> Iterator[AvatarRow]:
     """Make an avatar of each head, one after the other.
 
     folder: holds MakeHuman's base mesh. reference: holds scans. A head whose folder is None is left
@@ -101,7 +101,7 @@ def measure(folder: Path | None, reference: Path | None) -> Iterator[Row]:
             yield measured_file(scan(Scans.read(reference), Path(scratch)))
 
 
-def measured(head: FittedHead | None, name: str = "built-in") -> Row:
+def measured(head: FittedHead | None, name: str = "built-in") -> AvatarRow:
     """Measure the avatar of the built-in head or a person."""
     begin = time.perf_counter()
     avatar = avatar_of(head, _request(), _quiet)
@@ -117,7 +117,7 @@ def measured(head: FittedHead | None, name: str = "built-in") -> Row:
     return _row(guess, METRES_PER_MILLIMETRE * rest, points, names, content, seconds, avatar)
 
 
-def measured_file(head: HeadFile) -> Row:
+def measured_file(head: HeadFile) -> AvatarRow:
     """Measure the avatar of a head from a file."""
     begin = time.perf_counter()
     avatar = avatar_of(fit_users_head(head.mesh, head.landmarks), _request(), _quiet)
@@ -140,11 +140,20 @@ def _row(
     content: bytes,
     seconds: float,
     avatar: Avatar,
-) -> Row:
+) -> AvatarRow:
     shapes = sum(found == expected for found, expected in zip(names, ARKIT_SHAPES, strict=False))
     count = in_place(own, points)
     size = len(content) / 1e6
-    return Row(guess.name, len(own), count, shapes, size, seconds, avatar.sums, guess)
+    return AvatarRow(
+        name=guess.name,
+        vertices=len(own),
+        in_place=count,
+        shapes=shapes,
+        megabytes=size,
+        seconds=seconds,
+        sums=avatar.sums,
+        guess=guess,
+    )
 
 
 def in_place(own: Points, points: Points) -> int:
@@ -174,7 +183,7 @@ def _quiet(_: str) -> None:
     """Ignore progress lines."""
 
 
-def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
+def report(rows: Sequence[AvatarRow], guesses: Sequence[Guess] = ()) -> str:
     """The text to print. guesses: landmark guesses of further heads."""
     files = [
         (row.name, row.vertices, row.in_place, row.shapes, row.megabytes, row.seconds)
@@ -201,7 +210,7 @@ def report(rows: Sequence[Row], guesses: Sequence[Guess] = ()) -> str:
     )
 
 
-def targets(rows: Sequence[Row]) -> list[Target]:
+def targets(rows: Sequence[AvatarRow]) -> list[Target]:
     """The targets: all vertices in place, and all names."""
     found = []
     for row in rows:

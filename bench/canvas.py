@@ -98,18 +98,18 @@ class Canvas:
 
 
 @dataclass(frozen=True)
-class Shot:
+class ComparedPicture:
     """A picture for comparisons, and the number of triangles in its mesh."""
 
     triangles: int
     image: Image
 
-    def difference(self, other: Shot) -> Floats64:
+    def difference(self, other: ComparedPicture) -> Floats64:
         """Difference of each pixel from the one in another picture [levels of 255], (H, W)."""
         apart = self.image.astype(np.float64) - other.image
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 
-    def rms(self, truth: Shot) -> float:
+    def rms(self, truth: ComparedPicture) -> float:
         """Root mean square difference from another picture [levels of 255]."""
         return float(np.sqrt((self.difference(truth) ** 2).mean()))
 

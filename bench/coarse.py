@@ -50,14 +50,14 @@ MOST_NEIGHBOURS = 10
 LEAST_GAIN = 0.005  # degrees
 
 
-class Layout(NamedTuple):
+class CoarseLayout(NamedTuple):
     """The left half of the coarse head: triangles, shape (F, 3), and the group of each triangle."""
 
     triangles: Integers32
     groups: npt.NDArray[np.str_]
 
 
-class Surface(NamedTuple):
+class MeasuredSurface(NamedTuple):
     """The built-in head in a pose: all vertices [mm], and points with normals to compare with."""
 
     vertices: Floats64
@@ -65,16 +65,16 @@ class Surface(NamedTuple):
     normals: Floats64
 
 
-def layout() -> Layout:
+def layout() -> CoarseLayout:
     """The layout of assets/coarse.toml, with indices of the coarse head's vertices."""
     head = coarse_head()
     table_of_groups = read_toml(LAYOUT_FILE)["triangles"]
     triangles = np.searchsorted(head.file_vertices, np.vstack([*table_of_groups.values()]))
     groups = np.repeat(list(table_of_groups), [len(each) for each in table_of_groups.values()])
-    return Layout(triangles.astype(np.int32), groups)
+    return CoarseLayout(triangles.astype(np.int32), groups)
 
 
-def surfaces() -> list[Surface]:
+def surfaces() -> list[MeasuredSurface]:
     """The built-in head in all poses, refined once by the cubic scheme."""
     head = assets.load("head")
     simulation = sim.create(head)
@@ -86,7 +86,7 @@ def surfaces() -> list[Surface]:
         vertices = settled_positions(simulation, pose, 40)
         mesh = refiner.refine(vertices)
         tree = scipy.spatial.cKDTree(mesh.positions.copy())
-        found.append(Surface(vertices, tree, mesh.normals.astype(float)))
+        found.append(MeasuredSurface(vertices, tree, mesh.normals.astype(float)))
     return found
 
 
@@ -97,7 +97,7 @@ class Comparison:
         self._head = coarse_head()
         self._surfaces = surfaces()
 
-    def angles(self, tried: Layout, scheme: str = "cubic") -> Mapping[str, float]:
+    def angles(self, tried: CoarseLayout, scheme: str = "cubic") -> Mapping[str, float]:
         """The RMS angle [degrees] of each group, weighted by area; "face" is for all
         FREE_GROUPS.
         """
@@ -121,7 +121,7 @@ class Comparison:
 
 
 def _angles_and_areas(
-    mesh: refine.RefinedMesh, is_chosen: Flags, surface: Surface
+    mesh: refine.RefinedMesh, is_chosen: Flags, surface: MeasuredSurface
 ) -> tuple[Floats64, Floats64]:
     """Angle [degrees] between each triangle's normal and the nearest point's normal, and areas."""
     triangles = mesh.triangles[is_chosen].astype(np.int64)
@@ -137,8 +137,8 @@ def _angles_and_areas(
 
 
 def search(
-    comparison: Comparison, start: Layout, on_flip: Callable[[str], None], rounds: int = 3
-) -> Layout:
+    comparison: Comparison, start: CoarseLayout, on_flip: Callable[[str], None], rounds: int = 3
+) -> CoarseLayout:
     """Flip edges of FREE_GROUPS that lower the angle by LEAST_GAIN; `on_flip` gets a line."""
     known = coarse_head()
     fine = assets.load("head")
@@ -150,7 +150,7 @@ def search(
         edges = trimesh.geometry.faces_to_edges(present.triangles)
         edges = np.unique(np.sort(edges, axis=1), axis=0)
         for first, second in np.random.default_rng(turn).permutation(edges):
-            tried = flipped(present, int(first), int(second))
+            tried = with_flipped_edge(present, int(first), int(second))
             if tried is None or not _is_sound(tried, present, known, outward):
                 continue
             angle = comparison.angles(tried)["face"]
@@ -164,7 +164,7 @@ def search(
     return present
 
 
-def flipped(start: Layout, first: int, second: int) -> Layout | None:
+def with_flipped_edge(start: CoarseLayout, first: int, second: int) -> CoarseLayout | None:
     """The layout with the edge between two vertices flipped; None if it must not be flipped."""
     triangles = start.triangles
     beside = np.flatnonzero((triangles == first).any(axis=1) & (triangles == second).any(axis=1))
@@ -182,7 +182,9 @@ def flipped(start: Layout, first: int, second: int) -> Layout | None:
     return start._replace(triangles=changed)
 
 
-def _is_sound(tried: Layout, start: Layout, head: CoarseHead, outward: Floats64) -> bool:
+def _is_sound(
+    tried: CoarseLayout, start: CoarseLayout, head: CoarseHead, outward: Floats64
+) -> bool:
     """Whether flipped triangles are wide and face outward, and no vertex has too many
     neighbours.
     """

@@ -33,7 +33,7 @@ Map = Callable[[Points], Points]
 ROUND_COUNT = 20  # rounds of timing a frame
 
 
-class Row(NamedTuple):
+class EmbeddingRow(NamedTuple):
     """The RMS errors of three ways to move a fine mesh [units of the surface]."""
 
     surface: str
@@ -132,7 +132,7 @@ class FlatBinding:
         return np.stack([first, np.cross(normal, first), normal], axis=2)
 
 
-def measure() -> list[Row]:
+def measure() -> list[EmbeddingRow]:
     """Move the fine mesh of every surface by every map, and measure the errors."""
     rows = []
     for name, (rest, faces), (fine, _), maps in EMBEDDING_CASES:
@@ -146,7 +146,7 @@ def measure() -> list[Row]:
             flatly = flat.evaluate(positions, offset=True)
             without = flat.evaluate(positions, offset=False)
             rows.append(
-                Row(
+                EmbeddingRow(
                     surface=name,
                     map=bend.__name__,
                     triangles=len(faces),
@@ -160,7 +160,7 @@ def measure() -> list[Row]:
     return rows
 
 
-def report(rows: list[Row]) -> str:
+def report(rows: list[EmbeddingRow]) -> str:
     """A table of errors."""
     columns = (
         "surface:<9|map:<10|coarse:7d|fine:7d|ours:8.0f|flat + offset:14.0f|flat:8.0f|"
@@ -180,7 +180,7 @@ def report(rows: list[Row]) -> str:
     return "\n".join([title, unit, "", *table(columns, cells), "", f"on {processor()}"])
 
 
-def targets(rows: list[Row]) -> list[Target]:
+def targets(rows: list[EmbeddingRow]) -> list[Target]:
     """The targets: where the surface bends, a third of the error of flat binding with an offset."""
     least = min(row.with_offset / row.ours for row in rows)
     return [at_least("flat binding with offset by ours", least, 3.0)]

@@ -46,7 +46,7 @@ CAMERA_ANGLES = tuple(  # the whole range of the cameras
 )
 
 
-class Pose(NamedTuple):
+class MeasuredPose(NamedTuple):
     """The faults of one pose; None if lips or eyes need not be shut."""
 
     name: str
@@ -58,7 +58,7 @@ class Pose(NamedTuple):
     teeth: float  # mm deep in the teeth
 
 
-def measure(mixtures: int) -> list[Pose]:
+def measure(mixtures: int) -> list[MeasuredPose]:
     """Set the built-in head to each pose, and to this number of random mixtures."""
     head = assets.load("head")
     simulation = sim.create(head)
@@ -72,7 +72,7 @@ def measure(mixtures: int) -> list[Pose]:
         gaps = _gaps(head, simulation, refiner, name)
         inverted = inverted_count(simulation.rest_positions, now, head.faces)
         deep = simulation.anatomy.penetrations()
-        poses.append(Pose(name, *gaps, inverted, deep["lips"], deep["lids"], deep["teeth"]))
+        poses.append(MeasuredPose(name, *gaps, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 
 
@@ -215,14 +215,16 @@ def _lid_gap(near: Floats64, ends: Floats64, ball: Floats64) -> float:
     lid_columns = 23  # planes across an eye
     lid_end = 1.5  # [mm] near the corners of an eye that are not tested
     for x in np.linspace(left + lid_end, right - lid_end, lid_columns):
-        covered = _front(near, x, heights) >= np.maximum(_front(ball, x, heights), deepest)
+        covered = _frontmost_depths(near, x, heights) >= np.maximum(
+            _frontmost_depths(ball, x, heights), deepest
+        )
         skin = np.flatnonzero(covered)  # in the outermost planes there may be no skin
         if len(skin):
             widest = max(widest, int((~covered[skin[0] : skin[-1]]).sum()))
     return lid_step * widest
 
 
-def _front(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
+def _frontmost_depths(triangles: Floats64, x: float, heights: Floats64) -> Floats64:
     """Frontmost z of triangles (n, 3, 3) in the plane at x, shape (len(heights),).
 
     It is -inf at heights without a triangle.
@@ -263,16 +265,17 @@ def inverted_count(rest: Floats64, now: Floats64, faces: Triangles) -> int:
     return count
 
 
-def _worst(poses: Sequence[Pose], column: str) -> tuple[float, str]:
+def _worst(poses: Sequence[MeasuredPose], column: str) -> tuple[float, str]:
     """The greatest value of a column, and the name of its pose."""
-    values = [(getattr(pose, column), pose.name) for pose in poses]
-    return max((value for value in values if value[0] is not None), key=lambda pair: pair[0])
+    measured = [pose for pose in poses if getattr(pose, column) is not None]
+    worst = max(measured, key=lambda pose: getattr(pose, column))
+    return getattr(worst, column), worst.name
 
 
-def report(poses: Sequence[Pose]) -> str:
+def report(poses: Sequence[MeasuredPose]) -> str:
     """The text to print: the number of poses, and the worst pose for each measure."""
     torn = [pose for pose in poses if pose.inverted]
-    rows = [(column, *_worst(poses, column)) for column in Pose._fields[1:]]
+    rows = [(column, *_worst(poses, column)) for column in MeasuredPose._fields[1:]]
     return "\n".join(
         [
             f"{len(poses)} poses: every row of the layers, and random mixtures of muscles;",
@@ -288,7 +291,7 @@ def report(poses: Sequence[Pose]) -> str:
     )
 
 
-def targets(poses: Sequence[Pose]) -> list[Target]:
+def targets(poses: Sequence[MeasuredPose]) -> list[Target]:
     """The targets of skin and contacts; a few triangles may be inverted, as in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
     most = LARGEST_FAULTS.items()

@@ -188,10 +188,10 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     for number in range(rounds):
         points = turn.apply(space.person(weights)) + shift
         modes = space.modes @ turn.as_matrix().T
-        foot, facing, _ = _feet(points, space.triangles, asked, surface)
+        foot, facing, _ = _nearest_surface_points(points, space.triangles, asked, surface)
         near = np.linalg.norm(foot - points[asked], axis=1) < farthest_distance
         found = asked[near]
-        system = _changes(modes, points, found, facing[near])
+        system = _point_derivatives(modes, points, found, facing[near])
         left = ((foot[near] - points[found]) * facing[near]).sum(axis=1)
         correction = independent_points / max(len(found), 1)
         normal = correction * system.T @ system
@@ -200,7 +200,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
             marks = space.landmarks[face_landmarks]
             off = surface.landmarks[face_landmarks] - points[marks]
             for axis in np.eye(3):
-                system = _changes(modes, points, marks, np.tile(axis, (len(marks), 1)))
+                system = _point_derivatives(modes, points, marks, np.tile(axis, (len(marks), 1)))
                 normal += landmark_weight * system.T @ system
                 right += landmark_weight * system.T @ off @ axis
         normal[:count, :count] += np.eye(count)  # Gaussian prior of the weights
@@ -211,7 +211,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
         turn = moved * turn
         shift = moved.apply(shift) + step[count + 3 :]
     points = turn.apply(space.person(weights)) + shift
-    foot, facing, cosine = _feet(points, space.triangles, asked, surface)
+    foot, facing, cosine = _nearest_surface_points(points, space.triangles, asked, surface)
     away = foot - points[asked]
     near = np.linalg.norm(away, axis=1) < farthest_distance
     distance = (away * facing).sum(axis=1)
@@ -224,7 +224,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     )
 
 
-def _changes(modes: Points, points: Points, numbers: Faces, directions: Points) -> Points:
+def _point_derivatives(modes: Points, points: Points, numbers: Faces, directions: Points) -> Points:
     """Derivative of points along `directions` (n, 3), by modes, turns and shifts, (n, K + 6).
 
     modes: rotated, shape (K, V, 3). numbers: indices of the points, shape (n,).
@@ -235,7 +235,7 @@ def _changes(modes: Points, points: Points, numbers: Faces, directions: Points) 
     return np.hstack([by_modes, by_turns, directions])
 
 
-def _feet(
+def _nearest_surface_points(
     points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
     """Nearest point of the surface to each point, its normal, and the cosine between both

@@ -63,7 +63,7 @@ MOST_YAW = 10.0  # [degrees]; heads of frontal pictures turn less
 
 
 @dataclass(frozen=True)
-class Finding:
+class DetectorErrors:
     """The errors of a detector on the pictures of a set.
 
     errors: error of each point in each picture [percent of the eyes' distance], (n, 68, 2); the
@@ -225,7 +225,7 @@ def _half_of_mesh(mesh: Floats64, side: int) -> dict[int, Floats64]:
     return found | {number: mesh[pair[side]] for number, pair in single.items()}
 
 
-def measure(folder: Path, name: str, detector: Detector) -> Finding:
+def measure(folder: Path, name: str, detector: Detector) -> DetectorErrors:
     """Compare a detector with the labels of a set; raises UserError if there are no samples."""
     files = sorted(folder.glob("[0-9]*.json"))
     if not files:
@@ -243,11 +243,11 @@ def measure(folder: Path, name: str, detector: Detector) -> Finding:
         if found is not None:
             errors.append(errors_of(found, labels))
             yaw.append(labels["head"]["yaw"])
-    return Finding(name, np.array(errors).reshape(-1, 68, 2), np.array(yaw), picture_count)
+    return DetectorErrors(name, np.array(errors).reshape(-1, 68, 2), np.array(yaw), picture_count)
 
 
 def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:
-    """Errors of points (68, 2) against labels; see `Finding.errors`, shape (68, 2)."""
+    """Errors of points (68, 2) against labels; see `DetectorErrors.errors`, shape (68, 2)."""
     landmarks = labels["landmarks"]
     camera = labels["camera"]
     pixels = np.array(landmarks["pixels"])[:68]
@@ -267,7 +267,7 @@ def errors_of(found: Floats64, labels: Mapping[str, Any]) -> Floats64:
     return np.asarray(percent @ axes.T)
 
 
-def report(finding: Finding) -> str:
+def report(finding: DetectorErrors) -> str:
     """The text to print."""
     frontal = finding.is_frontal
     rows = []
@@ -301,7 +301,7 @@ def report(finding: Finding) -> str:
     return "\n".join(lines)
 
 
-def targets(finding: Finding) -> list[Target]:
+def targets(finding: DetectorErrors) -> list[Target]:
     """The bounds of errors on frontal pictures."""
     error = _mean(finding.distances[finding.is_frontal])
     constant = float(np.linalg.norm(finding.constant, axis=1).max())

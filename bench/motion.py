@@ -33,7 +33,7 @@ from .report import Target, at_least, at_most, table
 from .subjects import Points, Scans, settled_positions
 
 
-class Row(NamedTuple):
+class MotionRow(NamedTuple):
     """Scores of one shape."""
 
     shape: str
@@ -43,7 +43,7 @@ class Row(NamedTuple):
     blob: float
 
 
-def measure(directory: Path) -> tuple[list[Row], list[str]]:
+def measure(directory: Path) -> tuple[list[MotionRow], list[str]]:
     """Score each shape of the reference in `directory` that the head's ARKit table contains.
 
     Also returns the names of fields without a score: fields with an unknown name or without motion.
@@ -93,7 +93,7 @@ def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
     )
 
 
-def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) -> Row:
+def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) -> MotionRow:
     """Score one shape by its simulated and scanned displacements, (V, 3) [mm]."""
     areas = simulation.areas[:, None]
 
@@ -106,12 +106,12 @@ def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) 
 
     true = product(scanned, scanned)
     off = moved - scanned
-    return Row(
-        name,
-        cosine(moved),
-        float(np.sqrt(product(moved, moved) / true)),
-        product(off, off) / true,
-        max(cosine(blob) for blob in blobs_of(simulation.rest_positions, scanned)),
+    return MotionRow(
+        shape=name,
+        cosine=cosine(moved),
+        magnitude=float(np.sqrt(product(moved, moved) / true)),
+        residual=product(off, off) / true,
+        blob=max(cosine(blob) for blob in blobs_of(simulation.rest_positions, scanned)),
     )
 
 
@@ -133,12 +133,12 @@ def blobs_of(skin: Points, scanned: Points) -> Iterator[Points]:
         yield blob
 
 
-def mean_row(rows: list[Row]) -> Row:
+def mean_row(rows: list[MotionRow]) -> MotionRow:
     """The mean of each column."""
-    return Row("mean", *np.mean([row[1:] for row in rows], axis=0).tolist())
+    return MotionRow("mean", *np.mean([row[1:] for row in rows], axis=0).tolist())
 
 
-def report(rows: list[Row], left_out: list[str]) -> str:
+def report(rows: list[MotionRow], left_out: list[str]) -> str:
     """The text to print."""
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
@@ -154,7 +154,7 @@ def report(rows: list[Row], left_out: list[str]) -> str:
     return "\n".join(lines)
 
 
-def targets(rows: list[Row], _: list[str]) -> list[Target]:
+def targets(rows: list[MotionRow], _: list[str]) -> list[Target]:
     """The targets of the muscles: the mean, the worst shape, and every blob."""
     worst = min(rows, key=lambda row: row.cosine)
     below = [row for row in rows if not row.residual < 1.0 - row.blob**2]

@@ -63,7 +63,14 @@ def timed_pair(
     times = interleaved(both, max(round(seconds / spent), fewest_pairs))
     first, second = (1e3 * np.median(times, axis=0) / len(load.frames)).tolist()
     gain = float(np.median(times[:, 0] / times[:, 1]))
-    return Pair(load.name, method, len(load.faces), first, second, gain)
+    return Pair(
+        mesh=load.name,
+        method=method,
+        triangles=len(load.faces),
+        first=first,
+        second=second,
+        gain=gain,
+    )
 
 
 def by_threads(

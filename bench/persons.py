@@ -19,7 +19,7 @@ from .report import Target, at_most, table
 
 
 @dataclass(frozen=True)
-class Row:
+class PersonsRow:
     """One measure of NORMS: means of our women and men, and published means [mm]."""
 
     code: str
@@ -41,7 +41,7 @@ class Row:
         return self.published_men - self.published_women
 
 
-def measure(count: int) -> list[Row]:
+def measure(count: int) -> list[PersonsRow]:
     """Draw `count` women and as many men, and measure them."""
     space = person_space()
     means = {}
@@ -56,11 +56,11 @@ def measure(count: int) -> list[Row]:
         women = means[Sex.WOMAN][code] - pressed
         men = means[Sex.MAN][code] - pressed
         published = norm.women.mean, norm.men.mean
-        rows.append(Row(code, women, men, *published, norm.women.deviation))
+        rows.append(PersonsRow(code, women, men, *published, norm.women.deviation))
     return rows
 
 
-def report(rows: list[Row]) -> str:
+def report(rows: list[PersonsRow]) -> str:
     """The text to print."""
     columns = (
         "measure:<8|women:6.1f|published:9.1f|men:6.1f|published:9.1f|men's more:10.1f|"
@@ -74,7 +74,7 @@ def report(rows: list[Row]) -> str:
     return "\n".join(["means [mm]", *table(columns, cells)])
 
 
-def targets(rows: list[Row]) -> list[Target]:
+def targets(rows: list[PersonsRow]) -> list[Target]:
     """The targets: differences between the sexes are near the published ones."""
     off = np.mean([abs(row.difference - row.published_difference) / row.deviation for row in rows])
     return [at_most("sexes off the published distance, in deviations", float(off), 0.4)]

@@ -48,17 +48,17 @@ BEST_METHOD = "cubic displacement 2x"
 PRESET_OPTIONS = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
 
 
-def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
+def _sliding_method(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
     return "sliding", {"scheme": scheme, "criterion": refine.Displacement, **more}
 
 
 MEASURED_METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     STATIC_METHOD: ("none", {}),
-    "loop normal 2x": _sliding("loop", criterion=refine.NormalDrop),
-    BEST_METHOD: _sliding("cubic", blend=False),
-    "cubic displacement, blended 2x": _sliding("cubic", blend=True),
-    "detail displacement 2x": _sliding("detail", blend=False),
-    "detail displacement, blended 2x": _sliding("detail", blend=True),
+    "loop normal 2x": _sliding_method("loop", criterion=refine.NormalDrop),
+    BEST_METHOD: _sliding_method("cubic", blend=False),
+    "cubic displacement, blended 2x": _sliding_method("cubic", blend=True),
+    "detail displacement 2x": _sliding_method("detail", blend=False),
+    "detail displacement, blended 2x": _sliding_method("detail", blend=True),
     f"{FIRST_PRESET}, as set": (
         "kahler",
         {"scheme": PRESET_OPTIONS["scheme"], "criterion": PRESET_OPTIONS["criterion"]},
@@ -110,7 +110,7 @@ def measure(
     scores = []
     shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
     cameras = [render.OrbitCamera.framing(shown, view=view) for view in MEASURED_VIEWS]
-    bound = {title: _bound(subject, *MEASURED_METHODS[title]) for title in methods}
+    bound = {title: _bound_method(subject, *MEASURED_METHODS[title]) for title in methods}
     with Canvas((PICTURE_SIDE * SUPERSAMPLING, PICTURE_SIDE * SUPERSAMPLING), samples=0) as canvas:
         for name in expressions or subject.poses:
             progress(name)
@@ -129,7 +129,9 @@ def measure(
     return scores
 
 
-def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callable[[Points], Mesh]:
+def _bound_method(
+    subject: Subject, refiner: str, options: Mapping[str, Any]
+) -> Callable[[Points], Mesh]:
     """Bind a method to the subject's coarse mesh: a function from positions (V, 3) to a mesh."""
     own = dict(options)
     if own.get("scheme") == "detail":

@@ -80,7 +80,8 @@ def make(checkout: Path, folder: Path) -> list[str]:
             **fields,
         }
     }
-    names = [name for k in range(1000) if _file(checkout, name := f"identity{k:03d}") is not None]
+    names = [f"identity{number:03d}" for number in range(1000)]
+    names = [name for name in names if _file(checkout, name) is not None]
     if names:
         arrays[MODES_FILE] = {"modes": np.array([moved(name) for name in names])}
     for name, content in arrays.items():

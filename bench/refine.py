@@ -63,7 +63,7 @@ class Load:
     frames: Sequence[Points]
 
 
-class Row(NamedTuple):
+class RefineRow(NamedTuple):
     """One method on one mesh."""
 
     mesh: str
@@ -91,7 +91,7 @@ def measure(
     progress: Callable[[str], object] = lambda _: None,
     *,
     on_card: bool = False,
-) -> list[Row]:
+) -> list[RefineRow]:
     """Measure each of `sizes`, "face" or a key of TRIANGLE_COUNTS, for about `seconds` each.
 
     on_card: compare the processor with the graphics card. Raises UserError without OpenGL 4.3.
@@ -102,7 +102,7 @@ def measure(
         load = load_of(size)
         of_size = _face_cases if size == "face" else _waving_cases
         cases = _card_cases(load) if on_card else of_size(load)
-        rows += _timed(load, cases, seconds)
+        rows += _timed_rows(load, cases, seconds)
     return rows
 
 
@@ -131,11 +131,11 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
     seed = 2003
     aside = np.random.default_rng(seed).uniform(-0.3, 0.3, (len(flat), 2))
     rest = flat + np.pad(aside, ((0, 0), (0, 1)))
-    frames = [_waved(rest, phase) for phase in (0.0, 0.5)]
+    frames = [_waved_positions(rest, phase) for phase in (0.0, 0.5)]
     return Load(name, faces, rest, frames)
 
 
-def _waved(rest: Points, phase: float) -> Points:
+def _waved_positions(rest: Points, phase: float) -> Points:
     """Positions of the mesh at a phase of its waves, which are stronger in some places."""
     x = rest[:, 0]
     y = rest[:, 1]
@@ -166,7 +166,10 @@ def _face_cases(load: Load) -> list[_Case]:
     }
     for method, options in methods.items():
         cases.append(_our_case(method, load, "kahler", **options))
-    cases += [_fixed("kahler", load, {}), _fixed("window's look", load, WINDOWS_LOOK)]
+    cases += [
+        _case_of_one_topology("kahler", load, {}),
+        _case_of_one_topology("window's look", load, WINDOWS_LOOK),
+    ]
     return [*cases, *(_our_case(f"uniform Loop {k}x", load, "loop", levels=k) for k in (1, 2))]
 
 
@@ -183,7 +186,7 @@ def _waving_cases(load: Load) -> list[_Case]:
     drops = np.concatenate([at_rest - cosines(frame) for frame in load.frames])
     cases = [
         _our_case("smooth", load, "kahler", **WINDOWS_LOOK),
-        _fixed("smooth", load, WINDOWS_LOOK),
+        _case_of_one_topology("smooth", load, WINDOWS_LOOK),
     ]
     # Percentage of split edges -> quantiles of the drops for the two thresholds.
     thresholds = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
@@ -192,7 +195,7 @@ def _waving_cases(load: Load) -> list[_Case]:
         title = f"kahler {percent} %"
         limits = {"threshold_once": once, "threshold_twice": twice}
         cases.append(_our_case(title, load, "kahler", **limits))
-        cases.append(_fixed(title, load, limits))
+        cases.append(_case_of_one_topology(title, load, limits))
     return cases
 
 
@@ -224,7 +227,7 @@ def _our_case(method: str, load: Load, refiner: str, **options: Any) -> _Case:
     return _Case(method, float(np.mean(counts)), bound.refine)
 
 
-def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
+def _case_of_one_topology(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
     """A case of `kahler` with one topology in all frames: the splits that any frame needs."""
     changing = refine.create("kahler", load.faces, load.rest, **options)
     splits = refine.splits_of_clip(changing, load.frames)
@@ -232,7 +235,7 @@ def _fixed(method: str, load: Load, options: Mapping[str, Any]) -> _Case:
     return _our_case(f"{method}, one topology", load, "kahler", splits=splits, **others)
 
 
-def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
+def _timed_rows(load: Load, cases: Sequence[_Case], seconds: float) -> list[RefineRow]:
     """Time all cases in as many rounds as fit into `seconds`; return a row for each case."""
 
     def run(case: _Case) -> None:
@@ -249,7 +252,7 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
     rounds = int(np.clip(seconds / max(spent, 1e-9), fewest_rounds, most_rounds))
     times = 1e3 * interleaved(calls, rounds) / len(load.frames)
     return [
-        Row(
+        RefineRow(
             *(load.name, case.method, len(load.faces), case.triangles),
             *(float(np.median(column)), float(np.min(column))),
         )
@@ -277,7 +280,7 @@ def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> Floats64:
     return seconds
 
 
-def report(found: Sequence[Row]) -> str:
+def report(found: Sequence[RefineRow]) -> str:
     """The text to print."""
     lines = [
         f"Refinement on all cores of {processor()}: medians of interleaved rounds;",

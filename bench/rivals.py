@@ -50,7 +50,7 @@ class Case(NamedTuple):
     truth: Points
 
 
-class Row(NamedTuple):
+class RivalRow(NamedTuple):
     """One method on one surface."""
 
     surface: str
@@ -147,7 +147,9 @@ def available() -> tuple[list[Method], list[str]]:
     return found, list(skipped.values())
 
 
-def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list[Row], list[str]]:
+def measure(
+    case: Case, methods: Sequence[Method], seconds: float
+) -> tuple[list[RivalRow], list[str]]:
     """Measure the methods: rows, and a line for each method that does not accept the mesh.
 
     `seconds`: time for each, with at least five calls.
@@ -156,23 +158,23 @@ def measure(case: Case, methods: Sequence[Method], seconds: float) -> tuple[list
     skipped = []
     for method in methods:
         try:
-            limit = _limit(case, method) if method.has_limit else 0.0
+            limit = _limit_for_ratio(case, method) if method.has_limit else 0.0
             frame = partial(method.bind(case.faces, case.rest), case.positions, limit)
             surface = frame()
         except (RuntimeError, ValueError) as error:
             skipped.append(f"skipped: {method.title} of the {case.surface}: {error}")
             continue
-        distance = _distance(case, surface)
+        distance = _distance_from_truth(case, surface)
         # Not interleaved: threads of one library would slow the next library.
         time_of_each = 0.5 * seconds / len(methods)
-        first = _shortest(partial(_first, case, method, limit), time_of_each)
+        first = _shortest(partial(_refined_by, case, method, limit), time_of_each)
         further = _shortest(frame, time_of_each)
         kept = case.surface, len(case.faces), method.title, len(surface[1])
-        rows.append(Row(*kept, distance, first, further))
+        rows.append(RivalRow(*kept, distance, first, further))
     return rows, skipped
 
 
-def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
+def report(rows: Sequence[RivalRow], methods: Sequence[Method]) -> str:
     """The text to print."""
     packages = dict.fromkeys(method.package for method in methods)
     lines = [
@@ -188,7 +190,7 @@ def report(rows: Sequence[Row], methods: Sequence[Method]) -> str:
     return "\n".join(lines)
 
 
-def _limit(case: Case, method: Method) -> float:
+def _limit_for_ratio(case: Case, method: Method) -> float:
     """The limit that leads to TRIANGLE_RATIO times the triangles, or slightly fewer."""
     frame = method.bind(case.faces, case.rest)
 
@@ -211,7 +213,7 @@ def _limit(case: Case, method: Method) -> float:
     return high
 
 
-def _distance(case: Case, surface: Surface) -> float:
+def _distance_from_truth(case: Case, surface: Surface) -> float:
     """Root mean square distance from the true surface [millionths of the diagonal]."""
     points, triangles = surface
     away = closest_points(case.truth, points.astype(np.float64), triangles.astype(np.int32))
@@ -219,7 +221,7 @@ def _distance(case: Case, surface: Surface) -> float:
     return 1e6 * float(np.sqrt((away.distances**2).mean())) / diagonal
 
 
-def _first(case: Case, method: Method, limit: float) -> Surface:
+def _refined_by(case: Case, method: Method, limit: float) -> Surface:
     return method.bind(case.faces, case.rest)(case.positions, limit)
 
 

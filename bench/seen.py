@@ -108,7 +108,7 @@ def silent() -> Iterator[None]:
         os.close(kept)
 
 
-class Shape(NamedTuple):
+class ScoredShape(NamedTuple):
     """The scores of one shape or pair of shapes; the module's docstring defines them."""
 
     own: float
@@ -155,7 +155,7 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
 
 def compared(
     scores: Scores, neutral: Scores, own: Sequence[str], posed: Sequence[str] = ()
-) -> Shape:
+) -> ScoredShape:
     """Scores minus those of the neutral face, for a pose with the shapes `own` at 1.
 
     posed: further shapes of the pose, which do not count as confusions. The score of a pair is its
@@ -170,10 +170,10 @@ def compared(
             others[base] = max(found) if is_sided else float(np.mean(found))
     highest = max(others, key=lambda name: others[name])
     mean = float(np.mean([over.get(name, 0.0) for name in own]))
-    return Shape(mean, highest, others[highest])
+    return ScoredShape(mean, highest, others[highest])
 
 
-def measure(tracker: Tracker) -> dict[str, Shape]:
+def measure(tracker: Tracker) -> dict[str, ScoredShape]:
     """Show every shape of the built-in head to the tracker; return scores by name without side."""
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=PICTURE_SIZE)) as studio:
@@ -198,7 +198,7 @@ def measure(tracker: Tracker) -> dict[str, Shape]:
     return shapes
 
 
-def report(shapes: Mapping[str, Shape]) -> str:
+def report(shapes: Mapping[str, ScoredShape]) -> str:
     """The text to print."""
     rows = [
         (name, shape.own, f" {shape.highest}", shape.score, f" {shape.verdict}")

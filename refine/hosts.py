@@ -129,7 +129,7 @@ class WeldedRefiner:
         carried = np.array(table[rows[np.arange(len(rows)), nearest]])
         if table.dtype.kind in "fciub":
             between = np.flatnonzero(weights.max(axis=1) < 1.0)  # points of the input stay exact
-            carried[between] = _mixed(table, rows[between], weights[between])
+            carried[between] = _weighted_rows(table, rows[between], weights[between])
         return carried
 
     def _find_origins(self) -> tuple[Integers64, Floats64]:
@@ -145,16 +145,18 @@ class WeldedRefiner:
         return rows, wide / wide.sum(axis=1, keepdims=True)  # float32 sums are 1.00000003
 
 
-def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.NDArray[Any]:
+def _weighted_rows(
+    table: npt.NDArray[Any], rows: Integers64, weights: Floats64
+) -> npt.NDArray[Any]:
     """Return weighted means of three rows each, (M, 3), of a table of numbers of any type."""
     if table.dtype.kind == "c":  # as two floats: infinity times a complex is NaN
         pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
-        return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
+        return np.ascontiguousarray(_weighted_rows(pairs, rows, weights)).view(table.dtype)[..., 0]
     corners = table[rows]
     fractions = weights.reshape(weights.shape + (1,) * (table.ndim - 1))
     has_part = np.broadcast_to(fractions > 0.0, corners.shape)
     if table.dtype.kind in "iu" and table.dtype.itemsize == 8:
-        return _mixed_wide(corners, fractions, has_part)
+        return _weighted_integers(corners, fractions, has_part)
     parts = np.zeros(corners.shape, dtype=np.result_type(table.dtype, np.float64))
     np.multiply(corners, fractions, where=has_part, out=parts)  # infinity times zero would be NaN
     mixed = parts.sum(axis=1)
@@ -166,7 +168,7 @@ def _mixed(table: npt.NDArray[Any], rows: Integers64, weights: Floats64) -> npt.
     return np.asarray(rounded, dtype=table.dtype)
 
 
-def _mixed_wide(
+def _weighted_integers(
     corners: npt.NDArray[np.integer], fractions: Floats64, has_part: Flags
 ) -> npt.NDArray[np.integer]:
     """Return weighted means of integers of 64 bits, shape (M, 3, ...).

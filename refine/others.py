@@ -183,7 +183,7 @@ class _Refined:
         order = np.argsort(parents, kind="stable")
 
         vertex_edge_points = mesh.vertex_count + mesh.triangle_edges[split].astype(np.int64)
-        children = _children(mesh.faces[split].astype(np.int64), vertex_edge_points)
+        children = _child_triangles(mesh.faces[split].astype(np.int64), vertex_edge_points)
         faces = np.concatenate([children, mesh.faces[whole]])[order]
 
         corner_rows = None
@@ -191,12 +191,12 @@ class _Refined:
         if values is not None:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
             edges = mesh.triangle_attribute_edges[split] >> 1
-            children = _children(rows[split], len(values) + edges.astype(np.int64))
+            children = _child_triangles(rows[split], len(values) + edges.astype(np.int64))
             corner_rows = np.concatenate([children, rows[whole]])[order]
             values = _with_edge_points(values, mesh)
 
         corners = self.barycentric[split]
-        children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
+        children = _child_triangles(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
         barycentric = np.concatenate([children, self.barycentric[whole]])[order]
         finer = connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows)
         if mesh.is_sharp.any():  # both halves of a crease are creases
@@ -220,7 +220,7 @@ def _with_edge_points(values: Floats32, mesh: Connectivity) -> Floats32:
     return np.concatenate([values, edge_points])
 
 
-def _children(corners: npt.NDArray[Any], edge_points: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def _child_triangles(corners: npt.NDArray[Any], edge_points: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Return four triangles for each triangle: three at its corners, and one between its midpoints.
 
     `corners`: values at corners, shape (F, 3, ..); `edge_points`: values at edges, of this shape.

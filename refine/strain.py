@@ -58,7 +58,7 @@ class Shortening:
         asked = (wanted != 0.0).any(axis=(1, 2))[triangles].any(axis=1)
         triangles = triangles[asked]
         self._faces = triangles.astype(np.uint32)
-        self._weights = _weights(rest, triangles, wanted)
+        self._weights = _corner_weights(rest, triangles, wanted)
         self._lost = np.zeros(wanted.shape[:2], dtype=np.float32)
         self._rest = np.zeros((len(triangles), 3))
         _square_lengths(rest, self._faces, self._rest)
@@ -71,11 +71,11 @@ class Shortening:
         not finite.
         """
         take_positions_like_rest(positions, self._is_used, self._positions, self._points)
-        _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
+        _write_shortening(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 
 
-def _weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats32:
+def _corner_weights(rest: Floats64, faces: Integers64, directions: Floats64) -> Floats32:
     """Weights of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
     a, b, c = (rest[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -113,7 +113,7 @@ def _square_lengths(positions: Floats64, faces: Unsigned32, squares: Floats64) -
 
 
 @njit
-def _shorten(
+def _write_shortening(
     positions: Floats64, faces: Unsigned32, rest: Floats64, weights: Floats32, lost: Floats32
 ) -> None:
     """Write the loss of length along the directions, (V, k)."""

@@ -15,7 +15,7 @@ COMMAND_WORDS = 7
 
 Run = Callable[..., Any]
 """Calls a function with arguments while the context of a stream is current."""
-Columns = tuple[Floats32 | None, Mapping[str, Floats32]]
+RefinedColumns = tuple[Floats32 | None, Mapping[str, Floats32]]
 """Texture coordinates and attributes in the rows of a frame."""
 
 
@@ -42,7 +42,11 @@ class GpuMesh:
     """
 
     def __init__(
-        self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats32], Columns]
+        self,
+        stream: GpuStream,
+        run: Run,
+        columns: int,
+        parted: Callable[[Floats32], RefinedColumns],
     ) -> None:
         """`columns`: length of a row; `parted`: returns the texture coordinates and attributes."""
         self._stream = stream

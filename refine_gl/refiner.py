@@ -37,7 +37,7 @@ from risorius.refine import (
 from .context import GpuError, OwnContext, own_context
 from .frames import VECTOR_BYTES, Frames, programs_of
 from .refined import GpuBuffers, GpuMesh, Run
-from .rules import Rules, Settings
+from .rules import RefinerSettings, Rules
 from .tables import tables_of
 
 Threshold = Annotated[
@@ -83,7 +83,7 @@ def create_kahler_gl(
     if blend is None:
         blend = scheme == "cubic" and not coherent
     decides = port.criterion_of(criterion, NormalDrop(threshold_once, threshold_twice), splits)
-    settings = Settings(scheme, decides, blend, bool(coherent))
+    settings = RefinerSettings(scheme, decides, blend, bool(coherent))
     if scheme == "cubic" and values.get("crease_angle") is not None:
         warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")
         return create_kahler(faces, rest_positions, **settings._asdict(), **values)
@@ -109,7 +109,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         rest_positions: npt.ArrayLike,
         *,
         own: OwnContext,
-        settings: Settings,
+        settings: RefinerSettings,
         **values: Unpack[Values],
     ) -> None:
         """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames whose caller has none.

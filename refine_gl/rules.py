@@ -43,7 +43,7 @@ PASS_ELEMENTS: Mapping[str, tuple[str, ...]] = {
 """The elements that each pass has threads for. Passes are dispatches, named as their shaders."""
 
 
-class Settings(NamedTuple):
+class RefinerSettings(NamedTuple):
     """The settings of a refiner, named as in `refine.create_kahler`."""
 
     scheme: Literal["loop", "cubic"]
@@ -60,7 +60,7 @@ class Rules:
         mesh: Connectivity,
         rest_positions: Floats64,
         rest_normals: Floats32,
-        settings: Settings,
+        settings: RefinerSettings,
     ) -> None:
         """Bind the settings; raises ValueError for options that the card does not have."""
         self._mesh = mesh
@@ -72,8 +72,8 @@ class Rules:
         self._drop = next((each for each in parts if type(each) is NormalDrop), None)
         self._displacement = next((each for each in parts if type(each) is Displacement), None)
         still = [each for each in parts if each.is_constant]
-        taken = [self._drop, self._displacement, *still]
-        others = [each for each in parts if not any(each is one for one in taken)]
+        taken = {id(each) for each in (self._drop, self._displacement, *still)}
+        others = [each for each in parts if id(each) not in taken]
         self.others = Maximum(others) if others else None
         """Criteria that the processor measures; None if there are none."""
         for bound in (*still, self.others):

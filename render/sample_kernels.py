@@ -32,7 +32,7 @@ _Edges = tuple[_Linear, _Linear, _Linear]  # edge functions; number k belongs to
 _Corner = tuple[float, float, float, float]  # a row of the argument `corners` of `rasterise`
 
 
-class Pixels(NamedTuple):
+class SampledPixels(NamedTuple):
     """The edge pixels of an area, row by row.
 
     before: number of edge pixels before each pixel of the area, (height, width + 1).
@@ -51,7 +51,7 @@ def _differ(first: float, second: float) -> bool:
 
 
 @njit
-def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
+def find_edges(surfaces: Unsigned8, least: float, slope: float) -> SampledPixels:
     """Find the edge pixels of an area.
 
     surfaces: surface numbers and depths, see surface_number.glsl, (height, width, 4).
@@ -82,7 +82,7 @@ def find_edges(surfaces: Unsigned8, least: float, slope: float) -> Pixels:
                 rows[count] = y
                 count += 1
         before[y, width] = count
-    return Pixels(before, columns[:count].copy(), rows[:count].copy())
+    return SampledPixels(before, columns[:count].copy(), rows[:count].copy())
 
 
 @njit
@@ -118,7 +118,7 @@ def rasterise(
     kind: int,
     numbers: tuple[float, float, float],
     has_back: bool,
-    pixels: Pixels,
+    pixels: SampledPixels,
     depths: Floats64,
     seen: Floats64,
 ) -> None:
@@ -147,7 +147,7 @@ def _rasterise_side(
     triangles: Integers32,
     kind: int,
     numbers: tuple[float, float, float],
-    pixels: Pixels,
+    pixels: SampledPixels,
     depths: Floats64,
     seen: Floats64,
 ) -> None:
@@ -328,7 +328,7 @@ def _number(
 def mix(
     colours: Unsigned8,
     surfaces: Unsigned8,
-    pixels: Pixels,
+    pixels: SampledPixels,
     depths: Floats64,
     seen: Floats64,
     least: float,

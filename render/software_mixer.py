@@ -99,7 +99,14 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
         values[:, 1] = rows[:, :3] @ cut[:3] + cut[3]
     kind = TRIANGLE_KIND if drawn.has_triangles else SURFACE_KIND
     clip = _moved(rows[:, :3], view.world_to_clip)
-    return _Surface(clip, values, mesh.triangles.view(np.int32), kind, SKIN_NUMBERS, True)
+    return _Surface(
+        corners=clip,
+        values=values,
+        triangles=mesh.triangles.view(np.int32),
+        kind=kind,
+        numbers=SKIN_NUMBERS,
+        has_back=True,
+    )
 
 
 def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
@@ -115,7 +122,14 @@ def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) ->
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
     values = np.zeros((len(positions), 2))
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
-    return _Surface(clip, values, triangles, SURFACE_KIND, part_numbers(placed), False)
+    return _Surface(
+        corners=clip,
+        values=values,
+        triangles=triangles,
+        kind=SURFACE_KIND,
+        numbers=part_numbers(placed),
+        has_back=False,
+    )
 
 
 def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
@@ -133,7 +147,14 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
     clip = _moved(positions, view.projection)
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
-    return _Surface(clip, values, triangles, HAIR_KIND, part_numbers(placed), False)
+    return _Surface(
+        corners=clip,
+        values=values,
+        triangles=triangles,
+        kind=HAIR_KIND,
+        numbers=part_numbers(placed),
+        has_back=False,
+    )
 
 
 def _moved(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:

@@ -4,8 +4,8 @@ Source: Kähler et al. 2003, section 5: pictures with flat and Gouraud shading, 
 coloured by their number of splits. Per-pixel lighting, skin and backgrounds are additions. All
 colours are sRGB, 0 to 1; the shaders convert them to linear light.
 
-A key light, which throws shadows, a fill light, a rim light and ambient light from a hemisphere
-light the scene. All lights move with the camera, as in a studio where only the head turns.
+The scene has a key light, which throws shadows, a fill light, a rim light, and the ambient light of
+a hemisphere. All lights move with the camera, as in a studio where only the head turns.
 """
 
 from dataclasses import dataclass

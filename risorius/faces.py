@@ -77,13 +77,15 @@ class Faces:
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
         """Numbers of samples for training and testing: two sets without a common person."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
-        count = min(
-            max(round(share * len(persons)), 1), len(persons) - 1
-        )  # With one person, no such split exists.
-        tested = set(persons[:count])
-        is_tested = [int(row["person_number"]) in tested for row in self.rows]
-        numbers = range(len(self))
-        return [k for k in numbers if not is_tested[k]], [k for k in numbers if is_tested[k]]
+        # With one person, no such split exists.
+        count = min(max(round(share * len(persons)), 1), len(persons) - 1)
+        tested_persons = set(persons[:count])
+        trained: list[int] = []
+        tested: list[int] = []
+        for number, row in enumerate(self.rows):
+            is_tested = int(row["person_number"]) in tested_persons
+            (tested if is_tested else trained).append(number)
+        return trained, tested
 
 
 def _members(part: io.BytesIO) -> list[tuple[str, bytes]]:

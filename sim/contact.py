@@ -178,6 +178,15 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
     strength = seal * surface.areas[vertex]
     members = np.flatnonzero(count).astype(np.int32)
-    lips = LipPairs(vertex, beside, weight, below, weight, strength, 1.0 / most, members)
+    lips = LipPairs(
+        vertex=vertex,
+        beside=beside,
+        weight=weight,
+        below=below,
+        least_gap=np.zeros(len(pairs)),  # measured below, by the other fields
+        seal=strength,
+        averaging=1.0 / most,
+        members=members,
+    )
     gap = -below * lips.separations(surface.positions)[:, 1]
     return lips._replace(least_gap=np.minimum(gap, 0.0))

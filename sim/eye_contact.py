@@ -67,7 +67,7 @@ def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeCo
     rows = []
     tops = []
     for number, ball in enumerate(eyeballs):
-        vertex = _near(x, ball)
+        vertex = _vertices_near_ball(x, ball)
         least, sunk = _kept_out(x[vertex], ball)
         faces, longest = _long_faces(surface, vertex, ball)
         top = ball_surface(1.0, ball.radius, ball.iris) + EYE_CLEARANCE
@@ -105,7 +105,7 @@ def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeCo
     )
 
 
-def _near(x: Floats64, ball: Eyeball) -> Integers64:
+def _vertices_near_ball(x: Floats64, ball: Eyeball) -> Integers64:
     """Vertices (n,) of `x` (V, 3) that could touch a ball."""
     eye_reach = 12.0  # mm around an eyeball in which skin is watched
     return np.flatnonzero(np.linalg.norm(x - ball.centre, axis=1) < ball.radius + eye_reach)

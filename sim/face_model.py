@@ -85,7 +85,7 @@ def build_face_model(head: Any) -> FaceModel:
 def build_plain(foundation: Foundation) -> FaceModel:
     """A spring mesh that may have a jaw and eyeballs, but no lids, no tongue and no fixed neck."""
     count = foundation.surface.vertex_count
-    return _assembled(
+    return _assembled_model(
         foundation,
         lids=None,
         tongue=None,
@@ -107,7 +107,7 @@ def build_face(foundation: Foundation, landmark_indices: Integers64) -> FaceMode
     if eyeballs:
         names = [control.name for control in foundation.controls]
         lids = place_lids(foundation.rig, surface, landmarks, eyeballs, names)
-    return _assembled(
+    return _assembled_model(
         foundation,
         lids=lids,
         tongue=place_tongue(foundation.parts, foundation.space, landmark_indices),
@@ -117,7 +117,7 @@ def build_face(foundation: Foundation, landmark_indices: Integers64) -> FaceMode
     )
 
 
-def _assembled(
+def _assembled_model(
     foundation: Foundation,
     *,
     lids: Lids | None,

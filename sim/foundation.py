@@ -209,7 +209,14 @@ def _skull(
     weight = np.clip(surface.smoother(rig.jaw.softness)(weight), 0.0, 1.0)
     least_mandible = 1e-4  # share of the jaw's motion that counts as no motion
     weight[weight < least_mandible] = 0.0
-    return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
+    return Skull(
+        condyles=condyles,
+        mandible_weight=weight,
+        eyeballs=balls,
+        jaw=rig.jaw,
+        eyes=rig.eyes,
+        head=rig.head,
+    )
 
 
 def _eyeballs(given: Any, space: FaceSpace) -> tuple[Eyeball, ...]:

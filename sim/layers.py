@@ -121,11 +121,11 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     weights = list(reader.weights.items())[len(lowest) :]
     floors = list(reader.floors.items())[len(lowest) :]
     return Layers(
-        MappingProxyType({title: names for title, names in reader.groups.items() if names}),
-        MappingProxyType(reader.actions),
-        MappingProxyType({name: read_only(row) for name, row in weights}),
-        MappingProxyType({name: read_only(row) for name, row in floors}),
-        MappingProxyType(reader.share_of),
+        groups=MappingProxyType({title: names for title, names in reader.groups.items() if names}),
+        actions=MappingProxyType(reader.actions),
+        weights=MappingProxyType({name: read_only(row) for name, row in weights}),
+        floors=MappingProxyType({name: read_only(row) for name, row in floors}),
+        share_of=MappingProxyType(reader.share_of),
     )
 
 
@@ -142,7 +142,9 @@ class _Row(Record):
 
     def exchanged(self) -> _Row:
         """The row with left and right exchanged."""
-        return replace(self, entries=_exchanged(self.entries), at_least=_exchanged(self.at_least))
+        return replace(
+            self, entries=_exchanged_sides(self.entries), at_least=_exchanged_sides(self.at_least)
+        )
 
 
 class _Reader:
@@ -242,7 +244,7 @@ class _Reader:
         return weight, floor
 
 
-def _exchanged(entries: Mapping[str, float]) -> dict[str, float]:
+def _exchanged_sides(entries: Mapping[str, float]) -> dict[str, float]:
     """Entries of a row with left and right exchanged."""
     left, right = SIDE_ENDINGS
     names = {name: name.removesuffix(left) + right for name in entries if name.endswith(left)}

@@ -93,7 +93,7 @@ def one_lid(
     on_lid: Flags,
     fold_ends: tuple[float, float],
 ) -> OneLid:
-    """Measure one lid along its front edge; fold_ends: plateau and reach of `_falloff` [mm]."""
+    """Measure one lid along its front edge; fold_ends: as in `_fading_weight` [mm]."""
     edge = surface.positions[edge_vertices]
     distance = polyline_distance(surface.positions, edge)
     column = axes.column(surface.positions)
@@ -103,15 +103,15 @@ def one_lid(
     margin_reach = 3.5  # mm from a lid's front edge that belong to its margin
     slide_reach = 1.9  # factor of the turn's reach: skin around the lid slides with it
     return OneLid(
-        weight=on_lid * _falloff(distance, eyes.lid_plateau, eyes.lid_reach),
-        fold=on_lid * _falloff(distance, *fold_ends),
-        slide=on_lid * _falloff(distance, 0.0, slide_reach * eyes.lid_reach),
+        weight=on_lid * _fading_weight(distance, eyes.lid_plateau, eyes.lid_reach),
+        fold=on_lid * _fading_weight(distance, *fold_ends),
+        slide=on_lid * _fading_weight(distance, 0.0, slide_reach * eyes.lid_reach),
         near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
         front=np.interp(where, columns, axes.angle(edge)),
         depth=np.interp(where, columns, np.linalg.norm(edge - axes.centre, axis=1)),
     )
 
 
-def _falloff(distance: Floats64, plateau: float, reach: float) -> Floats64:
+def _fading_weight(distance: Floats64, plateau: float, reach: float) -> Floats64:
     """Return 1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
     return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))

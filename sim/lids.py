@@ -96,7 +96,7 @@ def _lifted_eyes(
         highest = 0.0
         for number, (part, ball) in enumerate(zip(parts, eyeballs, strict=True)):
             lids = _lid_vertices(rig, surface, landmarks, [part], (ball,))[0]
-            lift = _lift(lids, surface, ball, meeting > own_meeting)
+            lift = _closed_lid_lift(lids, surface, ball, meeting > own_meeting)
             parts[number] = part._replace(sink=part.sink - lift)
             highest = max(highest, lift.max(initial=0.0))
         cost = max(highest, good_lift) + lift_per_meeting * (meeting - own_meeting)
@@ -164,7 +164,9 @@ def gaze_fractions_of(apertures: Floats64) -> Floats64:
     return fraction
 
 
-def _lift(lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool) -> Floats64:
+def _closed_lid_lift(
+    lids: LidVertices, surface: SkinSurface, ball: Eyeball, both: bool
+) -> Floats64:
     """Return how far each lid vertex of a closed eye must be lifted [mm], shape (L,).
 
     both: whether the lower lid is lifted, too.
@@ -223,11 +225,11 @@ def _one_eye(
     upper, lower = _both_lids(eyes, surface, axes, edges, side)
     where = np.linspace(0.0, 1.0, LID_COLUMNS)
     height = np.maximum(upper.front - lower.front, 0.0)
-    wide = _smoothed(height)
+    wide = _smoothed_opening(height)
     least_opening = 0.05  # rad: closed lids do not overlap where an eye opens less
     widest = height.max()
     full = wide / max(widest, least_opening)
-    slide = _slide(upper.slide + lower.slide, column, full)
+    slide = _slide_shares(upper.slide + lower.slide, column, full)
     exact = np.interp(column, where, height)
     broad = np.interp(column, where, np.minimum(wide, widest))
     weight = upper.weight + lower.weight
@@ -242,7 +244,7 @@ def _one_eye(
     meeting = np.interp(arrives, where, seam)
     rises = np.interp(column, where, plain_seam)
     closing += weight * (meeting - rises)
-    margins = _margin(upper, 1.0, column, angle) | _margin(lower, -1.0, column, angle)
+    margins = _lid_margin(upper, 1.0, column, angle) | _lid_margin(lower, -1.0, column, angle)
     margins[np.concatenate(edges)] = True
     closing[margins] = (meeting - angle)[margins]
     above = turn_above(surface, axes, edges[0], side, (upper.front, seam))
@@ -275,7 +277,7 @@ def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64)
     return sunk
 
 
-def _slide(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
+def _slide_shares(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
     """Return the share of each vertex in the slide, shape (V,), from the eye's opening there.
 
     near: share from the distance to the lids (V,). full: opening by column, 1 where it is widest.
@@ -305,7 +307,7 @@ def _both_lids(
     return upper, lower
 
 
-def _margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
+def _lid_margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
     """The margin of a lid itself, up to its front edge, shape (V,)."""
     edge_turn = 1e-3  # rad
     where = np.linspace(0.0, 1.0, LID_COLUMNS)
@@ -333,7 +335,7 @@ def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
     return joined
 
 
-def _smoothed(height: Floats64) -> Floats64:
+def _smoothed_opening(height: Floats64) -> Floats64:
     """Opening by column, smoothed at the ends so that skin off the margin does not crease."""
     smooth_columns = 13  # a third of the opening's width
     wide = np.convolve(np.pad(height, smooth_columns), np.ones(smooth_columns) / smooth_columns)

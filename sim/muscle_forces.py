@@ -38,7 +38,7 @@ from .fibres import (
     over_skin,
 )
 from .muscle_stack import bottom_up, points_along, stack_muscles
-from .muscles import Line, LineHold, PlacedMuscle, Ring, skin_shares
+from .muscles import LineHold, PlacedLine, PlacedMuscle, Ring, skin_shares
 from .rig import LinearMuscle, Rig
 from .skull import RigidMotion
 from .state import State
@@ -171,14 +171,14 @@ def build_muscle_forces(
     strength = rig.tissue.stiffness_scale * surface.areas
     order = bottom_up(placed)
     stack = stack_muscles(placed, order, surface, landmarks, lip_side)
-    bundle = _bundle(placed, order, surface, mandible_weight)
+    bundle = _bundle_lines(placed, order, surface, mandible_weight)
     holds = []
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
     tones = [rig.tissue.passive * at.muscle.tone for at in placed]
     lip_weights = [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed]
-    carries = _carries(placed, order, strength, stack)
+    carries = _carrying_attachments(placed, order, strength, stack)
     least_stiffness = 0.4  # per area, in units of the rig: weaker attachments are dropped
     least = least_stiffness * strength
     return MuscleForces(
@@ -192,14 +192,14 @@ def build_muscle_forces(
             muscle=bundle.muscle,
             passive=np.array(tones, np.float64),
             holds=_attachments(holds, least, np.zeros((0, 3))),
-            pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
+            pulls=_attachments(_pulling_attachments(placed, order, strength), least, np.zeros(0)),
             carries=_attachments(carries, least, np.zeros(0)),
         ),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
 
 
-def _bundle(
+def _bundle_lines(
     placed: Sequence[PlacedMuscle],
     order: Sequence[int],
     surface: SkinSurface,
@@ -231,15 +231,17 @@ def _bundle(
     )
 
 
-def _gain(line: Line) -> float:
+def _gain(line: PlacedLine) -> float:
     """Return the gain of a line's pull; 0 for a sphincter."""
     return 0.0 if line.fibre is None else line.fibre.gain
 
 
-Part = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the skin
+PartOfSkin = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the skin
 
 
-def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64) -> list[Part]:
+def _pulling_attachments(
+    placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64
+) -> list[PartOfSkin]:
     """Return the attachments of skin to each line that pulls, with gain; arcs are in samples."""
     return [
         (
@@ -251,9 +253,9 @@ def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Float
     ]
 
 
-def _carries(
+def _carrying_attachments(
     placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64, stack: Stack
-) -> list[Part]:
+) -> list[PartOfSkin]:
     """Return the attachments of skin to each line that lies on others; arcs are in points.
 
     The line of the muscle that holds a vertex most carries this vertex.
@@ -262,7 +264,7 @@ def _carries(
     lies = np.zeros((line_count, FIBRE_POINTS), dtype=np.bool_)
     line_of_row = np.repeat(np.arange(line_count), np.diff(stack.rows))
     lies[line_of_row, stack.point] = True
-    parts: list[Part] = []
+    parts: list[PartOfSkin] = []
     least_carried = 0.05  # least weight of skin that one muscle carries for another
     nothing = np.zeros(len(strength)), np.zeros(len(strength))
     for n in order:

@@ -29,7 +29,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers64
 from ..geometry.polylines import arc_lengths
 from .fibres import FIBRE_POINTS, SAMPLE_COUNT, AttachedPoints, Stack, over_skin
-from .muscles import Line, PlacedMuscle, attach
+from .muscles import PlacedLine, PlacedMuscle, attach
 from .surface import SkinSurface
 
 
@@ -67,7 +67,7 @@ def stack_muscles(
             # Points are numbered through all lines, FIBRE_POINTS of each line.
             on = np.flatnonzero(np.repeat(np.isin(owners, above), FIBRE_POINTS))
             attached = AttachedPoints(points.reshape(-1, 3)[on], normals[on], sides[on])
-            found.append(_carried(placed[n], first, landmarks, attached, on))
+            found.append(_attached_points(placed[n], first, landmarks, attached, on))
         first += len(placed[n].lines)
     return _stack_of(found, len(lines))
 
@@ -89,7 +89,7 @@ class _Carried(NamedTuple):
     steady: Floats64  # (n, 3)
 
 
-def _carried(
+def _attached_points(
     beneath: PlacedMuscle,
     first: int,
     landmarks: Floats64,
@@ -108,16 +108,16 @@ def _carried(
     weights = np.array([hold.weight for hold in holds])[chosen]
     steady = np.array([hold.steady for hold in holds])[chosen]
     return _Carried(
-        at,
-        first + strongest,
-        arcs * (SAMPLE_COUNT - 1),
-        np.array(along)[chosen],
-        weights,
-        steady,
+        at=at,
+        line=first + strongest,
+        sample=arcs * (SAMPLE_COUNT - 1),
+        place=np.array(along)[chosen],
+        weight=weights,
+        steady=steady,
     )
 
 
-def points_along(line: Line, arc: Floats64) -> Floats64:
+def points_along(line: PlacedLine, arc: Floats64) -> Floats64:
     """Convert arc lengths 0..1 along a line to fractional indices of its points, shape (n,)."""
     reached = arc_lengths(line.points)
     positions: Floats64 = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
@@ -129,7 +129,16 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
     if not found:
         none = np.zeros(0)
         nobody = np.zeros(0, np.int64)
-        found = [_Carried(nobody, nobody, none, none, none, np.zeros((0, 3)))]
+        found = [
+            _Carried(
+                at=nobody,
+                line=nobody,
+                sample=none,
+                place=none,
+                weight=none,
+                steady=np.zeros((0, 3)),
+            )
+        ]
     joined = _Carried(*(np.concatenate(column) for column in zip(*found, strict=True)))
     held = np.zeros(line_count * FIBRE_POINTS)
     np.add.at(held, joined.at, joined.weight)

@@ -57,7 +57,7 @@ class Attachment(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Line:
+class PlacedLine:
     """A fibre in a face, or the line along a sphincter."""
 
     points: Floats64  # (FIBRE_POINTS, 3) mm
@@ -72,7 +72,7 @@ class PlacedMuscle:
     name: str  # of its control
     muscle: LinearMuscle | RingMuscle
     side: Side
-    lines: tuple[Line, ...]
+    lines: tuple[PlacedLine, ...]
     ring: Ring | None = None
 
     @property
@@ -102,7 +102,9 @@ def place_muscles(
                 for fibre in muscle.fibres:
                     points = next(laid)
                     lines.append(
-                        Line(points, fibre, attach_to_fibre(muscle, fibre, points, side, skin))
+                        PlacedLine(
+                            points, fibre, attach_to_fibre(muscle, fibre, points, side, skin)
+                        )
                     )
                 placed.append(PlacedMuscle(name, muscle, side, tuple(lines)))
             elif isinstance(muscle, RingMuscle):
@@ -110,7 +112,7 @@ def place_muscles(
                 hold = attach_to_ring(muscle, points, landmarks, side, skin)
                 ring = partial(_skin_of_ring, muscle, skin.positions, landmarks, hold.weight, side)
                 placed.append(
-                    PlacedMuscle(name, muscle, side, (Line(points, None, hold),), cache(ring))
+                    PlacedMuscle(name, muscle, side, (PlacedLine(points, None, hold),), cache(ring))
                 )
     return tuple(placed)
 
@@ -142,7 +144,7 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
 
 
 def attach(
-    placed: PlacedMuscle, line: Line, landmarks: Floats64, attached: AttachedPoints
+    placed: PlacedMuscle, line: PlacedLine, landmarks: Floats64, attached: AttachedPoints
 ) -> Attachment:
     """Attach points to one line of a muscle in a face."""
     muscle = placed.muscle
@@ -153,7 +155,7 @@ def attach(
     return attach_to_fibre(muscle, line.fibre, line.points, side, attached)
 
 
-def _gate(muscle: Muscle, side: Side) -> Gate:
+def _side_gate(muscle: Muscle, side: Side) -> Gate:
     """Where a muscle of one side may act."""
     is_divided = muscle.pair and not muscle.crosses
     lip = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, 0.0)
@@ -172,7 +174,7 @@ def attach_to_fibre(
         bulge=muscle.bulge,
         bulge_at=muscle.bulge_at,
         lift=fibre.lift,
-        gate=_gate(muscle, side),
+        gate=_side_gate(muscle, side),
     )
     count = len(attached.positions)
     found = Attachment(np.zeros(count), np.zeros(count), np.zeros((count, 3)))
@@ -207,12 +209,12 @@ def _within_ring(
     """Relative radii of points, 1 on the ellipse, and weights of their attachment, (n,)."""
     face_depth = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
     rear = float(landmarks[[36, 45], 2].mean()) - face_depth
-    ellipse = (*_middle(muscle, landmarks, side).tolist(), *muscle.radii)
+    ellipse = (*_ellipse_centre(muscle, landmarks, side).tolist(), *muscle.radii)
     arc = (side.sign, *muscle.arc_deg)
     count = len(attached.positions)
     rho = np.zeros(count)
     weight = np.zeros(count)
-    _hold_in_ring(ellipse, muscle.edge, arc, rear, _gate(muscle, side), attached, rho, weight)
+    _hold_in_ring(ellipse, muscle.edge, arc, rear, _side_gate(muscle, side), attached, rho, weight)
     return rho, weight
 
 
@@ -303,12 +305,12 @@ def _half_width(muscle: RingMuscle, landmarks: Floats64) -> float:
     return muscle.opening_width * abs(float(landmarks[64, 0] - landmarks[60, 0])) / 2.0
 
 
-def _middle(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
+def _ellipse_centre(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
     """Centre of a sphincter's ellipse."""
     return (muscle.shape or muscle.centre).position(landmarks, side)
 
 
-def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Floats64:
+def _ellipse_points(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Floats64:
     """Points of a sphincter's ellipse about its centre, `half_deg` to both sides, (count, 3)."""
     lateral, up, down = muscle.radii
     around = np.radians(muscle.arc_deg[0] + np.linspace(-half_deg, half_deg, count))
@@ -320,8 +322,8 @@ def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Flo
 def _ring_line(muscle: RingMuscle, landmarks: Floats64, side: Side) -> Floats64:
     """The line along the part of the ellipse that a sphincter covers, shape (FIBRE_POINTS, 3)."""
     _, half, fade = muscle.arc_deg
-    outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
-    return _middle(muscle, landmarks, side) + outline
+    outline = _ellipse_points(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
+    return _ellipse_centre(muscle, landmarks, side) + outline
 
 
 def _skin_of_ring(
@@ -333,9 +335,9 @@ def _skin_of_ring(
     """
     point_count = 25
     _, half, fade = muscle.arc_deg
-    outline = _outline(muscle, side, min(half + 0.5 * fade, 180.0), point_count)[:, :2]
+    outline = _ellipse_points(muscle, side, min(half + 0.5 * fade, 180.0), point_count)[:, :2]
     attached = np.flatnonzero(weight >= 0.1 * weight.max()).astype(np.uint32)
-    places = _middle(muscle, landmarks, side)[:2] + outline
+    places = _ellipse_centre(muscle, landmarks, side)[:2] + outline
     shares = skin_shares(places, x[attached, :2], weight[attached])
     smoothing_rounds = 8  # by eye: without them, the line has corners at vertices
     for _ in range(smoothing_rounds):

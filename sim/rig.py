@@ -54,7 +54,7 @@ Triple = tuple[float, float, float]
 Mix = tuple[tuple[int, float], ...]  # numbers of landmarks, and the weight of each
 
 
-def _mix(weights: dict[str, float]) -> Mix:
+def _mix_of_landmarks(weights: dict[str, float]) -> Mix:
     """Pairs of a table with rows "landmark number = weight"."""
     if not weights:
         raise ValueError("is empty, must be a table landmark number = weight")
@@ -64,7 +64,9 @@ def _mix(weights: dict[str, float]) -> Mix:
 Landmark = Annotated[
     str, OneOf(tuple(map(str, range(LANDMARK_COUNT))), f"a landmark, 0 to {LANDMARK_COUNT - 1}")
 ]
-Weights = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-5.0, 5.0)]], _mix)]
+Weights = Annotated[
+    Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-5.0, 5.0)]], _mix_of_landmarks)
+]
 
 
 @dataclass(frozen=True)

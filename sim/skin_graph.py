@@ -75,7 +75,7 @@ def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
     sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
     pairs, edge_of_side = different_pairs(sides)
     edges: Integers32 = pairs.astype(np.int32)
-    neighbours = _numbered(edges, np.zeros(0, np.int32), vertex_count)
+    neighbours = _edge_number_matrix(edges, np.zeros(0, np.int32), vertex_count)
     pattern = sparse.csc_array((np.ones(neighbours.nnz), neighbours.indices, neighbours.indptr))
     pattern.resize((vertex_count, vertex_count))
     degrees = np.diff(neighbours.indptr)
@@ -89,11 +89,13 @@ def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
     ).perm_c
     order = np.argsort(place).astype(np.int64)
     diagonal = np.arange(vertex_count, dtype=np.int32)
-    ordered = _numbered(place[edges], place[diagonal], vertex_count)
+    ordered = _edge_number_matrix(place[edges], place[diagonal], vertex_count)
     return SkinGraph(read_only(edges), read_only(edge_of_side), order, neighbours, ordered)
 
 
-def _numbered(edges: Integers32, diagonal: Integers32, vertex_count: int) -> sparse.csr_array:
+def _edge_number_matrix(
+    edges: Integers32, diagonal: Integers32, vertex_count: int
+) -> sparse.csr_array:
     """A symmetric matrix with the index of each edge, and E + i on the diagonal for vertex i."""
     i, j = edges.T
     entries = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])

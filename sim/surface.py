@@ -95,7 +95,7 @@ class SkinSurface:
 
     def smoother(self, extent: float) -> Callable[[Floats64], Floats64]:
         """Return a function that removes details below sqrt(`extent`) [mm2] from fields (V,)."""
-        return _smoother(self.graph, self.edge_stiffness, self.areas, extent)
+        return _diffusion_step(self.graph, self.edge_stiffness, self.areas, extent)
 
     def harmonic(
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
@@ -130,13 +130,23 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     stiffness = areas_beside / lengths**2
 
     normal_smoothing = 25.0  # mm2: tissue direction is the normal of the surface at some 5 mm scale
-    smooth = _smoother(graph, stiffness, areas, normal_smoothing)(vertex_normals(positions, faces))
+    smooth = _diffusion_step(graph, stiffness, areas, normal_smoothing)(
+        vertex_normals(positions, faces)
+    )
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
-    return SkinSurface(positions, faces, graph, lengths, stiffness, areas, directions)
+    return SkinSurface(
+        positions=positions,
+        faces=faces,
+        graph=graph,
+        lengths=lengths,
+        edge_stiffness=stiffness,
+        areas=areas,
+        normals=directions,
+    )
 
 
-def _smoother(
+def _diffusion_step(
     graph: SkinGraph, stiffness: Floats64, areas: Floats64, extent: float
 ) -> Callable[[Floats64], Floats64]:
     """One implicit diffusion step: details much smaller than sqrt(`extent`) [mm2] vanish."""

@@ -62,8 +62,8 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
             found = checked.numbers(f"head.parts: {part.name}", part.vertices, (None, 3), "(n, 3)")
             if not len(found):
                 continue
-            arch = _arch(space.to_standard(found))
-            inside = _inside(surface.positions, arch)
+            arch = _arch_of_teeth(space.to_standard(found))
+            inside = _relative_distances(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
             width, depth, _, low, high = arch
             near = inside < 1.0 + teeth_reach / min(width, depth)
@@ -83,7 +83,7 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
     )
 
 
-def _arch(teeth: Floats64) -> Floats64:
+def _arch_of_teeth(teeth: Floats64) -> Floats64:
     """Half width, depth, z of the axis, lowest and highest y of the arch of teeth (n, 3) [mm]."""
     half_width = np.abs(teeth[:, 0]).max()
     back = teeth[np.abs(teeth[:, 0]) > 0.9 * half_width, 2].mean()
@@ -94,7 +94,7 @@ def _arch(teeth: Floats64) -> Floats64:
     return np.array([half_width + lip_thickness, depth + lip_thickness, back, low, high])
 
 
-def _inside(points: Floats64, arch: Floats64) -> Floats64:
+def _relative_distances(points: Floats64, arch: Floats64) -> Floats64:
     """Distance from the axis, relative to the arch's surface there, shape (n,)."""
     radius_ratio: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
     return radius_ratio

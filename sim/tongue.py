@@ -77,9 +77,9 @@ class Tongue:
         flat_height = np.minimum(0.5 * thickness / self.half, 1.0)
         height = 1.0 + flat * (flat_height - 1.0)
         least_width_share = 0.7  # of its width and height, at least
-        shortening = np.sqrt(_length(self.spine) / _length(spine))
+        shortening = np.sqrt(_spine_lengths(self.spine) / _spine_lengths(spine))
         slender = np.clip(shortening, least_width_share, 1.0)
-        turn = _direction(spine) - _direction(self.spine)
+        turn = _spine_angles(spine) - _spine_angles(self.spine)
         sunk_share = 0.25  # of the way from the rest to its place on the lip
         # The thin tip hangs lower than the middle of the thicker part.
         sunk = sunk_share * risen * np.maximum(0.5 * thickness - self.half, 0.0)
@@ -145,7 +145,7 @@ class Tongue:
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
         # The root is stretched, and the tip keeps its shape.
         place = np.linspace(0.0, 1.0, SPINE_POINT_COUNT)
-        rest = _length(self.spine)
+        rest = _spine_lengths(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
         on_path: Floats64 = scipy.interpolate.PchipInterpolator(lengths, path)(way)
         return on_path
@@ -184,12 +184,13 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
     # Landmarks of the upper lip, and of the lower lip's middle, lower edge and both sides.
     lips = (62, 66, 57, 65, 67)
     return Tongue(
-        rest, along, spine, off, np.maximum(half, 0.1),
-        _edge(lower, up=1.0), _edge(upper, up=-1.0), landmarks[list(lips)],
+        rest=rest, along=along, spine=spine, off=off, half=np.maximum(half, 0.1),
+        lower_edge=_incisor_edge(lower, up=1.0), upper_edge=_incisor_edge(upper, up=-1.0),
+        lips=landmarks[list(lips)],
     )  # fmt: skip
 
 
-def _edge(teeth: Floats64, *, up: float) -> Floats64:
+def _incisor_edge(teeth: Floats64, *, up: float) -> Floats64:
     """The edge of the incisors of one jaw, in the middle, shape (3,)."""
     incisor_width = 5.0  # mm to each side of the middle that hold the incisors' edges
     incisors = teeth[np.abs(teeth[:, 0]) < incisor_width]
@@ -198,11 +199,11 @@ def _edge(teeth: Floats64, *, up: float) -> Floats64:
     return edge
 
 
-def _direction(spine: Floats64) -> Floats64:
+def _spine_angles(spine: Floats64) -> Floats64:
     """Angle between the spine towards its tip and the forward axis [rad], at each point."""
     forward, up = -np.gradient(spine, axis=0).T
     return np.unwrap(np.arctan2(up, forward))
 
 
-def _length(spine: Floats64) -> float:
+def _spine_lengths(spine: Floats64) -> float:
     return float(np.linalg.norm(np.diff(spine, axis=0), axis=1).sum())

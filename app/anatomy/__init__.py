@@ -1,7 +1,7 @@
 """Structures under translucent skin: the user's choice, and the parts that it makes visible.
 
-`AnatomyView` has the choice. `Anatomy` makes muscles, skull and throat of one face at their first
-use. `Dissection` has these, the face's own parts, and the opacity of the skin.
+`AnatomyView` has the choice. `DrawnAnatomy` makes muscles, skull and throat of one face at their
+first use. `Dissection` has these, the face's own parts, and the opacity of the skin.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Dissection(NamedTuple):
     """In front of this plane, skin is opaque."""
 
 
-class Anatomy:
+class DrawnAnatomy:
     """Makes muscles and skull of a face; other scenes have no structures."""
 
     def __init__(self, scene: Drawable) -> None:
@@ -98,7 +98,9 @@ class Anatomy:
         ]
         hair = self._hair_on_opaque_side(face, view) if has_hair else []
         parts_of_hair = [place(part, bones) for part in hair]
-        return Dissection((*structures, *others, *parts_of_hair), view.opacity, _cut(face, view))
+        return Dissection(
+            (*structures, *others, *parts_of_hair), view.opacity, _cutting_plane(face, view)
+        )
 
     def _structures(self, face: Face, view: AnatomyView) -> list[Any]:
         """Return the chosen structures among throat, bones and muscles."""
@@ -142,7 +144,7 @@ class Anatomy:
     def _half(self, face: Face, part: HeadPart, side: float) -> BentPart:
         """Return the half of a part that is not on `side`, in its current shape."""
         if (side, part.name) not in self._halves:
-            aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(face)[0]
+            aside = part.vertices[part.faces, 0].mean(axis=1) - _midline_point(face)[0]
             # Locks near the cut would float above the skull of the other side.
             is_lock = part.name.startswith(HAIR_NAME) and part.strand_radius > 0.0
             least = CUT_LOCKS if is_lock else 0.0
@@ -175,17 +177,17 @@ class Anatomy:
         return [half for half in halves if len(half[0].faces)]
 
 
-def _middle(face: Face) -> Any:
+def _midline_point(face: Face) -> Any:
     """Return a point of the midline at rest, shape (3,)."""
     return face.rest_positions[face.head.landmarks[27]]
 
 
-def _cut(face: Face, view: AnatomyView) -> render.Plane | None:
+def _cutting_plane(face: Face, view: AnatomyView) -> render.Plane | None:
     """Return the plane in front of which skin is opaque; None if both sides are translucent."""
     side = SIDE_SIGNS[view.side]
     if not side:
         return None
     bone = face.bone_transforms()["cranium"]
-    at = bone[:3, :3] @ _middle(face) + bone[:3, 3]
+    at = bone[:3, :3] @ _midline_point(face) + bone[:3, 3]
     normal = bone[:3, :3] @ (-side, 0.0, 0.0)
     return (*normal, -float(normal @ at))

@@ -254,7 +254,11 @@ def _linear_bands(
             width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
             profile = np.clip(width, 4.0, 17.0) * WIDTH_PROFILE
             bone = row.get("bone", "cranium")
-            bands.append(_Band(visible, profile, [name], name, number, bone))
+            bands.append(
+                _Band(
+                    line=visible, width=profile, controls=[name], name=name, fibre=number, bone=bone
+                )
+            )
     return bands
 
 

@@ -28,7 +28,7 @@ SKIPPED_STATE = "skipped"
 
 
 @dataclass(frozen=True)
-class Result:
+class LineResult:
     """The result of a line; error: the reason of a failure as one line of text, or ""."""
 
     job: Job
@@ -40,11 +40,11 @@ class Result:
 
 def run_lines(
     jobs: Sequence[Job], *, processes: int, scheduler: str | None, resume: bool
-) -> Iterator[Result]:
+) -> Iterator[LineResult]:
     """Run all lines, and yield the result of each when it ends; `resume` skips finished lines."""
     done = {job for job in jobs if resume and job.is_done()}
     waiting = [job for job in jobs if job not in done]
-    yield from (Result(job, SKIPPED_STATE) for job in done)
+    yield from (LineResult(job, SKIPPED_STATE) for job in done)
     for job in waiting:
         job.log.unlink(missing_ok=True)
     if scheduler is None:
@@ -53,10 +53,10 @@ def run_lines(
     from ..cluster import run_on_cluster
 
     for job, result, why in run_on_cluster(do_line, waiting, scheduler):
-        yield result or Result(job, FAILED_STATE, error=why)
+        yield result or LineResult(job, FAILED_STATE, error=why)
 
 
-def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
+def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[LineResult]:
     pool = WorkerPool(processes)
     with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(processes) as threads:
         try:
@@ -67,15 +67,15 @@ def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
             pool.stop()
 
 
-def do_line(pool: WorkerPool, job: Job) -> Result:
+def do_line(pool: WorkerPool, job: Job) -> LineResult:
     """Run a line in a process of the pool."""
     begin = time.monotonic()
     frames = list[int]()
     try:
         pool.run(_run_line, job, on_message=frames.append, log=job.log)
     except UserError as error:
-        return Result(job, FAILED_STATE, time.monotonic() - begin, error=str(error))
-    return Result(job, DONE_STATE, time.monotonic() - begin, frames[-1])
+        return LineResult(job, FAILED_STATE, time.monotonic() - begin, error=str(error))
+    return LineResult(job, DONE_STATE, time.monotonic() - begin, frames[-1])
 
 
 def _run_line(job: Job, send: Send) -> None:
@@ -97,7 +97,7 @@ def _run_line(job: Job, send: Send) -> None:
     send(tally.frames)
 
 
-def in_words(results: Sequence[Result], seconds: float) -> str:
+def in_words(results: Sequence[LineResult], seconds: float) -> str:
     """Summarize the results of all commands in one sentence. seconds: the batch's duration."""
     counts = {
         name: sum(each.status == name for each in results)
@@ -109,7 +109,7 @@ def in_words(results: Sequence[Result], seconds: float) -> str:
     return f"{counted(len(results), 'line')}: {outcomes}; {counted(frames, 'frame')}{rate}"
 
 
-def save_summary(target: Path, results: Sequence[Result]) -> None:
+def save_summary(target: Path, results: Sequence[LineResult]) -> None:
     """Write a CSV file with a row for each line; raises UserError if this fails."""
     rows = [
         {

@@ -43,7 +43,7 @@ def plate(text: str, size: float) -> Image:
         )
     ]
     width = max(face.getlength(line) for line, face, _ in lines)
-    page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
+    page, draw = _dark_plate(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
     for index, (line, face, ink) in enumerate(lines):
         y = (0.95 + 1.22 * index) * size
         draw.text((0.65 * size, y), line, font=face, fill=ink, anchor="lm")
@@ -59,7 +59,7 @@ def colour_bar(size: float) -> Image:
     tall = round(13.0 * size)
     wide = round(0.8 * size)
     numbers = round(3.1 * size)
-    page, draw = _page(numbers + small.getlength(f"{count}") + pad, tall + 2 * pad, size)
+    page, draw = _dark_plate(numbers + small.getlength(f"{count}") + pad, tall + 2 * pad, size)
     step = tall / count
     left = round(1.85 * size)
     for index, shade in enumerate(render.SPLIT_PALETTE):
@@ -78,7 +78,9 @@ def colour_bar(size: float) -> Image:
     return np.asarray(page.convert("RGBa"))
 
 
-def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
+def _dark_plate(
+    width: float, height: float, size: float
+) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
     """Return a dark plate with round corners, and an object that draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE_COLOUR, 0))
     draw = ImageDraw.Draw(page)

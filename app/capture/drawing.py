@@ -48,7 +48,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     view = view or DEFAULT_VIEW
     if view in render.VIEWS:
         return _framing(scene, view)
-    yaw, pitch, zoom = _turn(view)
+    yaw, pitch, zoom = _parsed_view(view)
     camera = _framing(scene, "front")
     camera.orbit(yaw, pitch)
     camera.target = scene.framing.focus.copy()
@@ -63,12 +63,12 @@ def check_camera(view: str | None, source: str = "") -> None:
     """Raise UserError for a camera unknown to `camera_for`; source: the file that sets it."""
     if view and view not in render.VIEWS:
         try:
-            _turn(view)
+            _parsed_view(view)
         except UserError as error:
             raise UserError(f"{source}: {error}" if source else str(error)) from None
 
 
-def _turn(view: str) -> tuple[float, float, float]:
+def _parsed_view(view: str) -> tuple[float, float, float]:
     """Parse yaw and pitch [degrees] and zoom; raise UserError for any other text."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
@@ -116,7 +116,7 @@ class CaptureOptions:
 
 
 @dataclass(frozen=True)
-class Frame:
+class DrawnFrame:
     """A picture, its labels and passes, and the number of triangles of its finest mesh."""
 
     image: Image
@@ -136,7 +136,7 @@ class Capture:
         meshes = [self.pipeline.bind(each) for each in refinements]
         self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
         self.viewports = side_by_side(self.surface.size, meshes)
-        self._frame: Frame | None = None  # the last frame
+        self._frame: DrawnFrame | None = None  # the last frame
         self._shown = np.zeros(0)  # positions and values in that frame
         if options.tone is not None:
             self.pipeline.set_tone(options.tone)
@@ -194,7 +194,7 @@ class Capture:
         self._shown = now
         return False
 
-    def next_frame(self) -> Frame:
+    def next_frame(self) -> DrawnFrame:
         """Return the frame of the current scene, or the last frame again if the scene is still."""
         if self.is_still() and self._frame is not None:
             self.refine()
@@ -202,7 +202,7 @@ class Capture:
             self._frame = self.draw_frame()
         return self._frame
 
-    def draw_frame(self) -> Frame:
+    def draw_frame(self) -> DrawnFrame:
         """Draw the current scene, with the labels and passes of the picture."""
         image = self.draw_image()
         known = None
@@ -211,7 +211,7 @@ class Capture:
             style = self.options.style
             wanted = self.options.passes
             known = labelled(self.scene, self._passes, self.camera, style, wanted)
-        return Frame(image, known, triangles)
+        return DrawnFrame(image, known, triangles)
 
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True

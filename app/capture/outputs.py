@@ -94,7 +94,7 @@ def check_name(output: Path) -> None:
 
 
 @dataclass(frozen=True)
-class Soundtrack:
+class FilmSound:
     """The sound of a film: at most `seconds` [s] of a sound file, from `begin` [s] on."""
 
     file: Path
@@ -118,7 +118,7 @@ class Encoder:
         part: Path,
         size: tuple[int, int],
         frames_per_second: float,
-        soundtrack: Soundtrack | None = None,
+        soundtrack: FilmSound | None = None,
     ) -> None:
         """Start ffmpeg, for frames of `size` pixels; raises UserError if it is missing."""
         form = FILM_FORMATS[target.suffix.lower()]
@@ -194,7 +194,7 @@ def film(
     target: Path,
     size: tuple[int, int],
     frames_per_second: float,
-    soundtrack: Soundtrack | None = None,
+    soundtrack: FilmSound | None = None,
 ) -> Iterator[FrameSink]:
     """Encode a film with ffmpeg, in the format of its suffix, with sound if the format allows it.
 

@@ -19,7 +19,7 @@ from ..motion import counted_frames, scene_of
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from ..workers import DiedError, Send, Worker, share_of_cores
-from .drawing import Capture, CaptureOptions, Frame
+from .drawing import Capture, CaptureOptions, DrawnFrame
 
 
 @dataclass(frozen=True)
@@ -48,21 +48,21 @@ def process_count(options: CaptureOptions, frame_count: int) -> int:
 
 def drawing(
     script: Script, options: CaptureOptions, until: float, count: int, *, progress: bool
-) -> Generator[tuple[float, Callable[[], Frame]]]:
+) -> Generator[tuple[float, Callable[[], DrawnFrame]]]:
     """Let `count` processes play a script; yield the time [s] of each frame, and a getter.
 
     The getter returns the frame, or raises the error of a process. The caller must call it for
     each frame of the span.
     """
     drawers: list[Worker] = []
-    shown: list[Frame] = []
+    shown: list[DrawnFrame] = []
 
     def stop() -> None:
         """End all processes, which have nothing to clean up."""
         for drawer in drawers:
             drawer.process.kill()
 
-    def next_frame(messages: Iterator[Frame | None]) -> Frame:
+    def next_frame(messages: Iterator[DrawnFrame | None]) -> DrawnFrame:
         """Return the next frame of a process; for None return the last frame again."""
         try:
             frame = next(messages)

@@ -15,8 +15,8 @@ from ..script import Script
 from ..sound.decoding import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
-from .drawing import Capture, CaptureOptions, Frame, check_camera
-from .outputs import SOUND_FILM_SUFFIXES, Soundtrack, check_name, format_of
+from .drawing import Capture, CaptureOptions, DrawnFrame, check_camera
+from .outputs import SOUND_FILM_SUFFIXES, FilmSound, check_name, format_of
 
 
 def capture(
@@ -100,7 +100,7 @@ def _draw_film(
 
 def _played(
     script: Script, options: CaptureOptions, until: float, progress: bool, count: int = 1
-) -> Generator[tuple[float, Callable[[], Frame]]]:
+) -> Generator[tuple[float, Callable[[], DrawnFrame]]]:
     """Play a script in `count` processes; yield each frame's time [s] and its drawing function."""
     if count > 1:
         yield from processes.drawing(script, options, until, count, progress=progress)
@@ -184,7 +184,7 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
             check_file(path)
 
 
-def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> Soundtrack | None:
+def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> FilmSound | None:
     """Return the sound of a script or of its span [s]; the sound may end before the film."""
     begin, end = span or (0.0, script.duration)
-    return None if script.sound is None else Soundtrack(script.sound, end - begin, begin)
+    return None if script.sound is None else FilmSound(script.sound, end - begin, begin)

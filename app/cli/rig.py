@@ -95,13 +95,13 @@ def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     _check_output(output, (file_path, rigging.landmarks, rigging.take), is_folder=is_folder)
     kinds = tuple(rigging.shapes.split(","))
     request = RigRequest(
-        kinds,
-        rigging.eyes,
-        rigging.pieces,
-        rigging.parts,
-        rigging.correctives,
-        not rigging.quiet,
-        _take_of(rigging, kinds),
+        kinds=kinds,
+        eyes=rigging.eyes,
+        corrections=rigging.pieces,
+        adds_parts=rigging.parts,
+        correctives=rigging.correctives,
+        progress=not rigging.quiet,
+        take=_take_of(rigging, kinds),
         chooses_by_take=rigging.take is not None,
     )
 

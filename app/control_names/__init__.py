@@ -144,17 +144,14 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
     words: as typed into a search. names: names of controls with their sides.
     """
     stems = {*names, *(split_side(name)[0] for name in names)}
-    return all(
-        any(
-            form in text.lower()
-            or any(
-                other.startswith(form) and not stems.isdisjoint(found)
-                for other, found in _synonyms()
-            )
-            for form in _forms(word)
-        )
-        for word in words.lower().split()
-    )
+    synonyms = [synonym for synonym, meant in _synonyms() if not stems.isdisjoint(meant)]
+    searched = text.lower()
+
+    def is_there(form: str) -> bool:
+        """Whether a form of a word is in the text, or begins a synonym."""
+        return form in searched or any(synonym.startswith(form) for synonym in synonyms)
+
+    return all(any(map(is_there, _forms(word))) for word in words.lower().split())
 
 
 def meant_by(word: str, names: Collection[str]) -> list[str]:

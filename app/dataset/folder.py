@@ -108,8 +108,8 @@ class SetFolder:
         for name in dict.fromkeys((*was, *options)):
             if was.get(name) != options.get(name):
                 raise UserError(
-                    f"{self.path}: was begun with {name} {_shortened(was.get(name))}, not "
-                    f"{_shortened(options.get(name))}; repeat the old value, or choose another "
+                    f"{self.path}: was begun with {name} {_short_text(was.get(name))}, not "
+                    f"{_short_text(options.get(name))}; repeat the old value, or choose another "
                     "folder"
                 )
 
@@ -137,7 +137,7 @@ class SetFolder:
         lengths = labels.get(LENGTHS_LABEL)
         if not isinstance(lengths, dict) or f"{name_of(index)}.png" not in lengths:
             return False
-        return all(_length(self.path / name) == length for name, length in lengths.items())
+        return all(_file_length(self.path / name) == length for name, length in lengths.items())
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
         """Write the files of a sample, the .json last; return their size [bytes].
@@ -187,7 +187,7 @@ def _add_lengths(file: Path) -> None:
     file.write_text(json.dumps(labels, separators=(",", ":")) + "\n", encoding="utf-8")
 
 
-def _length(file: Path) -> int | None:
+def _file_length(file: Path) -> int | None:
     """Return the length of a plain file [bytes], or None if there is no such file."""
     try:
         return file.stat().st_size if file.is_file() else None
@@ -195,6 +195,6 @@ def _length(file: Path) -> int | None:
         return None
 
 
-def _shortened(value: object) -> str:
+def _short_text(value: object) -> str:
     text = json.dumps(value)
     return text if len(text) < 60 else f"{text[:57]}..."

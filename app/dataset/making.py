@@ -53,9 +53,11 @@ def make_set(
     with folder.opened(request.options(), resume=resume):
         _check(folder, numbers)
         packing = Packing(folder, request.shards, numbers) if request.shards else None
+        unpacked = list(numbers)
         if packing:
             packing.begin()
-        missing = [n for n in numbers if not (packing and packing.has(n)) and not folder.has(n)]
+            unpacked = [number for number in numbers if not packing.has(number)]
+        missing = [number for number in unpacked if not folder.has(number)]
         if packing:
             packing.expect(missing)
         if scheduler is None:

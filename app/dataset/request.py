@@ -95,15 +95,15 @@ def request_of(
         if value is not None:
             words += [f"--{name}", as_text(value)]
     return SetRequest(
-        output.absolute(),
-        seed,
-        size,
-        passes,
-        load_table(sample),
-        backgrounds_of(background),
-        light_files_of(light),
-        refiner,
-        degrade,
-        shards,
-        shlex.join(words),
+        output=output.absolute(),
+        seed=seed,
+        size=size,
+        passes=passes,
+        table=load_table(sample),
+        backgrounds=backgrounds_of(background),
+        lights=light_files_of(light),
+        refiner=refiner,
+        degrade=degrade,
+        shards=shards,
+        arguments=shlex.join(words),
     )

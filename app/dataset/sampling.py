@@ -90,17 +90,19 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
     yaw, pitch, zoom, field_of_view = (float(cameras.uniform(*each)) for each in ranges)
     across, along = (float(cameras.uniform(*table.camera.shift)) for _ in range(2))
     return Sample(
-        seed,
-        index,
-        kind,
-        name,
-        {key: round(float(value), 4) for key, value in controls.items()},
-        None if is_at_camera else (aside[0], aside[1]),
-        SampleCamera(yaw, pitch, zoom, field_of_view, (across, along)),
-        seed * PERSON_COUNT + int(looks.integers(table.persons.count)),
-        chosen(looks, table.lights),
-        int(looks.integers(2**63)),
-        _degradation(table, faults),
+        seed=seed,
+        index=index,
+        kind=kind,
+        name=name,
+        controls={key: round(float(value), 4) for key, value in controls.items()},
+        gaze=None if is_at_camera else (aside[0], aside[1]),
+        view=SampleCamera(
+            yaw=yaw, pitch=pitch, zoom=zoom, field_of_view=field_of_view, shift=(across, along)
+        ),
+        person=seed * PERSON_COUNT + int(looks.integers(table.persons.count)),
+        light=chosen(looks, table.lights),
+        surroundings=int(looks.integers(2**63)),
+        degradation=_degradation(table, faults),
     )
 
 

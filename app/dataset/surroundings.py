@@ -124,7 +124,7 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
     name: a light of the renderer; ignored if `files` has light maps.
     """
     if not files.paths and name in LAMPS:
-        return SampleLight(name, _lamp(name, random))
+        return SampleLight(name, _varied_lamp(name, random))
     light_map = None if files.paths else LIGHT_MAPS[name]
     if light_map is None:
         path = files.paths[int(random.integers(len(files.paths)))]
@@ -134,13 +134,13 @@ def light_of(name: str, files: LightFiles, random: np.random.Generator) -> Sampl
     else:  # smaller angles, because windows and lamps of built-in maps lie in front of the face
         turn = round(float(np.clip(25.0 * random.standard_normal(), -60.0, 60.0)), 2)
     light, exposure = light_map.exposed(turn)
-    tint = _tint(random)
+    tint = _random_tint(random)
     changed: dict[str, Any] = {"key": _tinted(tint, light.key)}
     changed["around"] = tuple(_tinted(tint, row) for row in light.around)
     return SampleLight(name, replace(light, **changed), light_map, turn, exposure)
 
 
-def _tint(random: np.random.Generator) -> Floats64:
+def _random_tint(random: np.random.Generator) -> Floats64:
     """Draw random factors on red, green and blue light."""
     # Red and blue light change in opposite directions, by a standard deviation of 0.08.
     warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
@@ -151,13 +151,13 @@ def _tinted(tint: Floats64, light: tuple[float, float, float]) -> tuple[float, .
     return tuple((tint * light).tolist())
 
 
-def _lamp(name: str, random: np.random.Generator) -> Light:
+def _varied_lamp(name: str, random: np.random.Generator) -> Light:
     """Vary a lamp of the renderer: the direction of the key light, brightness and colour."""
     light = LAMPS[name]
     # The standard deviation along each axis is 18 degrees.
     to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
-    tint = _tint(random)
+    tint = _random_tint(random)
     changed: dict[str, Any] = {
         each: _tinted(tint, getattr(light, each))
         for each in ("key", "fill", "rim", "sky", "ground")

@@ -63,7 +63,7 @@ def _ordered(ends: Range) -> Range:
     return ends
 
 
-def _between(low: float, high: float) -> MadeFrom:
+def _range_within(low: float, high: float) -> MadeFrom:
     """Return the type of a range whose ends lie between two limits."""
     return MadeFrom(Annotated[Range, Within(low, high)], _ordered)
 
@@ -149,11 +149,11 @@ class HeadTurn(Record):
 class Camera(Record):
     """Ranges of the camera: angles and field of view [degrees], zoom, and shift [heights]."""
 
-    yaw: Annotated[Range, _between(-90.0, 90.0)]
-    pitch: Annotated[Range, _between(-60.0, 60.0)]
-    zoom: Annotated[Range, _between(0.2, 2.0)]
-    field_of_view: Annotated[Range, _between(5.0, 90.0)]
-    shift: Annotated[Range, _between(-0.3, 0.3)]
+    yaw: Annotated[Range, _range_within(-90.0, 90.0)]
+    pitch: Annotated[Range, _range_within(-60.0, 60.0)]
+    zoom: Annotated[Range, _range_within(0.2, 2.0)]
+    field_of_view: Annotated[Range, _range_within(5.0, 90.0)]
+    shift: Annotated[Range, _range_within(-0.3, 0.3)]
 
 
 @dataclass(frozen=True)
@@ -162,8 +162,8 @@ class Persons(Record):
 
     count: Annotated[int, Within(1, PERSON_COUNT)]
     women: Fraction
-    age: Annotated[Range, _between(18.0, 90.0)]
-    tone: Annotated[Range, _between(DARKEST_TONE, LIGHTEST_TONE)]
+    age: Annotated[Range, _range_within(18.0, 90.0)]
+    tone: Annotated[Range, _range_within(DARKEST_TONE, LIGHTEST_TONE)]
 
 
 @dataclass(frozen=True)
@@ -173,9 +173,9 @@ class Degradations(Record):
     blurred: Fraction
     noisy: Fraction
     compressed: Fraction
-    blur: Annotated[Range, _between(0.0, 20.0)]
-    noise: Annotated[Range, _between(0.0, 100.0)]
-    jpeg: Annotated[Range, _between(1.0, 95.0)]
+    blur: Annotated[Range, _range_within(0.0, 20.0)]
+    noise: Annotated[Range, _range_within(0.0, 100.0)]
+    jpeg: Annotated[Range, _range_within(1.0, 95.0)]
 
 
 @dataclass(frozen=True)
@@ -209,18 +209,18 @@ class SampleTable(Record):
         """The population of random persons."""
         persons = self.persons
         return Population(
-            persons.women,
-            persons.age,
-            persons.tone,
-            self.irises,
-            self.cuts_of_women,
-            self.cuts_of_men,
+            women=persons.women,
+            ages=persons.age,
+            tones=persons.tone,
+            irises=self.irises,
+            cuts_of_women=self.cuts_of_women,
+            cuts_of_men=self.cuts_of_men,
         )
 
     def can_be_combined(self, unit: str, others: Container[str]) -> bool:
         """Whether a unit may be combined with other units."""
-        excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
-        return not any(other in others for pair in excluded for other in pair)
+        excluding = {other for pair in self.excluded.pairs if unit in pair for other in pair}
+        return not any(other in others for other in excluding - {unit})
 
 
 def table_text() -> str:

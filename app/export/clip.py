@@ -126,13 +126,15 @@ def record(
     )
     parts = [_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True)]
     return Clip(
-        scene,
-        script,
-        frames_per_second,
-        (skin, *parts),
-        matrices,
-        dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
-        dict(zip(moved.lowest if moved else (), np.stack(activations, axis=1), strict=True)),
+        scene=scene,
+        script=script,
+        frames_per_second=frames_per_second,
+        surfaces=(skin, *parts),
+        bones=matrices,
+        controls=dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
+        activations=dict(
+            zip(moved.lowest if moved else (), np.stack(activations, axis=1), strict=True)
+        ),
     )
 
 
@@ -145,11 +147,11 @@ def _surface_of(
     """
     is_rigid = all(each is shapes[0] for each in shapes)
     return MovingSurface(
-        part.name,
-        shapes[0].astype(np.float64),
-        part.faces,
-        None if is_rigid else np.stack(shapes),
-        matrices[part.bone],
+        name=part.name,
+        rest=shapes[0].astype(np.float64),
+        faces=part.faces,
+        shapes=None if is_rigid else np.stack(shapes),
+        matrices=matrices[part.bone],
         colours=part.colours,
         shine=part.shine,
     )
@@ -188,12 +190,12 @@ def _unrefined(surface: MovingSurface, frame: int) -> FrameSurface:
     """Return an unrefined surface in a frame."""
     points = surface.at(frame)
     return FrameSurface(
-        points,
-        surface.normals_of(points, frame),
-        surface.faces,
-        surface.uv,
-        surface.face_uv,
-        surface.source,
+        points=points,
+        normals=surface.normals_of(points, frame),
+        faces=surface.faces,
+        uv=surface.uv,
+        face_uv=surface.face_uv,
+        source=surface.source,
     )
 
 
@@ -202,10 +204,10 @@ def _refined(clip: Clip, refinement: Refinement) -> Iterator[FrameSurface]:
     for mesh in clip.refined(refinement):
         faces = mesh.triangles.astype(np.int32)
         yield FrameSurface(
-            mesh.positions.astype(np.float64),
-            mesh.normals.astype(np.float64),
-            faces,
-            None if mesh.uv is None else mesh.uv.copy(),
-            None if mesh.uv is None else faces,
-            mesh.source.copy(),
+            points=mesh.positions.astype(np.float64),
+            normals=mesh.normals.astype(np.float64),
+            faces=faces,
+            uv=None if mesh.uv is None else mesh.uv.copy(),
+            face_uv=None if mesh.uv is None else faces,
+            source=mesh.source.copy(),
         )

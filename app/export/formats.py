@@ -210,6 +210,8 @@ def export(
 
 def _size_in_words(outputs: Iterable[Path]) -> str:
     """Return the total size of files in words; a folder counts with its files."""
-    files = [path for each in outputs for path in (each.iterdir() if each.is_dir() else [each])]
+    files: list[Path] = []
+    for output in outputs:
+        files += output.iterdir() if output.is_dir() else [output]
     size = sum(path.stat().st_size for path in files if path.is_file())
     return f"{size / 1e6:.1f} MB" if size >= 1_000_000 else f"{max(size / 1e3, 1.0):.0f} kB"

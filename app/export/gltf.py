@@ -20,10 +20,10 @@ import numpy.typing as npt
 from risorius.geometry.arrays import Floats64
 
 from ..recordings.names import ARKIT_SHAPES
-from ..rig.bodies import Body, PartBody, Shaped, Skin, moving, poses_of
+from ..rig.bodies import Body, PartBody, Shaped, SkinBody, moving, poses_of
 from ..rig.curves import nearest_weights, shape_curves
 from ..rig.glb import Glb
-from ..rig.poses import CRANIUM_BONE, Pose, without_head_pose
+from ..rig.poses import CRANIUM_BONE, FacePose, without_head_pose
 from ..rig.scene_file import add_pieces
 from ..rig.scene_meshes import Piece
 from ..rig.skeleton import Skeleton
@@ -35,7 +35,7 @@ from .formats import ExportRequest
 from .morphs import MORPH_TOLERANCE, Morphs, decompose, follow
 from .refined import RefinedSkin
 
-Poses = Mapping[str, tuple[Pose, Pose]]
+Poses = Mapping[str, tuple[FacePose, FacePose]]
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
     off: dict[str, Floats64] = {}
     for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
         if surface.shapes is None:
-            pieces.append(_rigid(surface, part))
+            pieces.append(_rigid_piece(surface, part))
             continue
         (shaped,) = moving([_body_of(surface, part)], poses)
         displacements = surface.shapes.astype(np.float64)
@@ -107,12 +107,15 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
         if part is None and poses:
             weights = nearest_weights(shaped.targets, displacements, weights)
         bone = None if part is None else part.bone
-        named = _named(surface, bone, shaped, weights)
-        left = displacements - _summed(named, named.targets)
+        named = _named_piece(surface, bone, shaped, weights)
+        left = displacements - _sums_of_changes(named, named.targets)
         if not request.named_only:
             residual = decompose(left)
             left -= np.tensordot(residual.weights, residual.targets, 1)
-            bends = follow(residual.weights, _bent(clip, surface) - _summed(named, named.bends))
+            bends = follow(
+                residual.weights,
+                _bends_of_normals(clip, surface) - _sums_of_changes(named, named.bends),
+            )
             named = _with_residual(named, residual, bends)
         pieces.append(named)
         off[surface.name] = np.linalg.norm(left, axis=2)
@@ -120,11 +123,19 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
     return Moving(pieces, farthest, float(np.sqrt((off[clip.skin.name] ** 2).mean())))
 
 
-def _rigid(surface: MovingSurface, part: Any) -> Piece:
+def _rigid_piece(surface: MovingSurface, part: Any) -> Piece:
     """Return a surface that a bone moves as a whole, without targets."""
     none = np.zeros((0, *surface.rest.shape))
     normals = part.normals.astype(np.float64)
-    return Piece(surface, part.bone, normals, (), none, none, np.zeros((0, 0)))
+    return Piece(
+        surface=surface,
+        bone=part.bone,
+        normals=normals,
+        names=(),
+        targets=none,
+        bends=none,
+        weights=np.zeros((0, 0)),
+    )
 
 
 def _body_of(surface: MovingSurface, part: Any) -> Body:
@@ -133,20 +144,22 @@ def _body_of(surface: MovingSurface, part: Any) -> Body:
         return PartBody(part, surface.rest, part.bone)
     if isinstance(surface, RefinedSurface):
         return RefinedSkin(surface)
-    return Skin(surface.rest, surface.faces)
+    return SkinBody(surface.rest, surface.faces)
 
 
-def _named(surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats64) -> Piece:
+def _named_piece(
+    surface: MovingSurface, bone: str | None, shaped: Shaped, weights: Floats64
+) -> Piece:
     """Return a surface with the named shapes that move it."""
     count = len(shaped.targets)
     return Piece(
-        surface,
-        bone,
-        surface.normals_of(surface.rest, None),
-        ARKIT_SHAPES[:count],
-        shaped.targets,
-        shaped.bends,
-        weights[:, :count],
+        surface=surface,
+        bone=bone,
+        normals=surface.normals_of(surface.rest, None),
+        names=ARKIT_SHAPES[:count],
+        targets=shaped.targets,
+        bends=shaped.bends,
+        weights=weights[:, :count],
     )
 
 
@@ -162,12 +175,12 @@ def _with_residual(piece: Piece, residual: Morphs, bends: Floats64) -> Piece:
     )
 
 
-def _summed(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
+def _sums_of_changes(piece: Piece, changes: npt.NDArray[np.floating]) -> Floats64:
     """Return sums of changes (K, V, 3), weighted by a piece's weights in each frame, (N, V, 3)."""
     return np.asarray(np.tensordot(piece.weights, changes, 1))
 
 
-def _bent(clip: Clip, surface: MovingSurface) -> Floats64:
+def _bends_of_normals(clip: Clip, surface: MovingSurface) -> Floats64:
     """Return changes of normals from rest in each frame, relative to the bone, (N, V, 3)."""
     assert surface.shapes is not None
     shapes = surface.shapes.astype(np.float64)

@@ -62,14 +62,14 @@ def decompose(moved: Floats64, most: int = 198) -> Morphs:
         mixed_shapes = mixing.T @ shapes
         while low < high:
             count = (low + high) // 2
-            off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
+            off = _largest_errors(moved, mixed_curves[:, :count], mixed_shapes[:count])
             if off.max() <= MORPH_TOLERANCE:
                 high = count
             else:
                 low = count + 1
-        found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
+        found.append(_targets_with_weights(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
-        left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
+        left = _largest_errors(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
         # In each round, a vertex keeps at least the root of 0.03 of its relative weight.
         ratio = left / max(left.max(), LEAST_TARGET_MOTION)
         weighing *= np.sqrt(np.maximum(ratio, 0.03))
@@ -86,14 +86,14 @@ def follow(weights: Floats64, changes: Floats64) -> Floats64:
     return np.asarray(np.tensordot(np.linalg.pinv(weights, rcond=1e-6), changes, 1))
 
 
-def _farthest(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
+def _largest_errors(moved: Floats64, curves: Floats64, shapes: Floats64) -> Floats64:
     """Return the largest error of the sum of shapes at each vertex, shape (V,)."""
     off = (curves @ shapes).reshape(moved.shape) - moved
     squares = np.einsum("nvc,nvc->nv", off, off)
     return np.asarray(np.sqrt(squares.max(axis=0)))
 
 
-def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
+def _targets_with_weights(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     """Turn the product of curves (N, k) and shapes (k, 3 V) into targets with weights 0..1."""
     signs = np.where(curves.max(axis=0) >= -curves.min(axis=0), 1.0, -1.0)
     curves = curves * signs
@@ -107,5 +107,5 @@ def _shifted(moved: Floats64, curves: Floats64, shapes: Floats64) -> Morphs:
     kept = np.abs(targets).max(axis=1, initial=0.0) > LEAST_TARGET_MOTION
     targets = targets[kept]
     weights = weights[:, kept]
-    error = float(_farthest(moved, weights, targets).max())
+    error = float(_largest_errors(moved, weights, targets).max())
     return Morphs(targets.reshape(-1, *moved.shape[1:]), weights, error)

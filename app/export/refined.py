@@ -19,7 +19,7 @@ from risorius.geometry.normals import vertex_normals
 from ..errors import UserError
 from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
-from ..rig.poses import Pose
+from ..rig.poses import FacePose
 from ..rig.surface import RefinedSurface
 from .clip import Clip
 
@@ -40,7 +40,7 @@ class RefinedSkin:
         _, first, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
         self._same = first[same.ravel()]
 
-    def at(self, pose: Pose) -> Floats64:
+    def at(self, pose: FacePose) -> Floats64:
         """Return the vertices in a pose, shape (V, 3)."""
         return self._refiner.refine(pose.skin).positions.astype(np.float64)
 
@@ -99,12 +99,7 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
     topologies.add(hash(at_rest.triangles.tobytes()))
     changing = refiner
     if len(topologies) > 1:
-        name = refinement.for_scene(clip.scene.name)[0]
-        if all(each.name != "splits" for each in refine.parameters(name)):
-            raise UserError(
-                f"--refined: the triangles of refiner {name} change, and it has no option splits; "
-                "choose another --refiner, or add --changing for USD, OBJ and VTKHDF"
-            )
+        _check_option_splits(refinement.for_scene(clip.scene.name)[0])
         refiner = clip.refiner(refinement, splits)
     with reported(plug_ins):
         rest = deepcopy(refiner.refine(clip.scene.rest_positions))
@@ -119,8 +114,8 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         if refiner is not changing:
             with reported(plug_ins):
                 own = changing.refine(clip.skin.at(frame))
-                own_origin_keys = _origin_keys(changing.origins())
-            _, ours, theirs = np.intersect1d(origin_keys, own_origin_keys, return_indices=True)
+                own_keys = _origin_keys(changing.origins())
+            _, ours, theirs = np.intersect1d(origin_keys, own_keys, return_indices=True)
             distances.append(np.linalg.norm(shapes[frame, ours] - own.positions[theirs], axis=1))
     triangles = rest.triangles.astype(np.int32)
     skin = RefinedSurface(
@@ -136,9 +131,23 @@ def with_refined_skin(clip: Clip, refinement: Refinement) -> RefinedClip:
         origins=origins,
         refiner=refiner,
     )
-    whole = replace(clip, surfaces=(skin, *clip.surfaces[1:]))
     apart = np.concatenate(distances)
-    return RefinedClip(whole, min(counts), max(counts), float(apart.max()), float(apart.mean()))
+    return RefinedClip(
+        clip=replace(clip, surfaces=(skin, *clip.surfaces[1:])),
+        fewest=min(counts),
+        most=max(counts),
+        farthest=float(apart.max()),
+        mean=float(apart.mean()),
+    )
+
+
+def _check_option_splits(refiner: str) -> None:
+    """Raise UserError if a refiner of this name has no option `splits`."""
+    if all(each.name != "splits" for each in refine.parameters(refiner)):
+        raise UserError(
+            f"--refined: the triangles of refiner {refiner} change, and it has no option splits; "
+            "choose another --refiner, or add --changing for USD, OBJ and VTKHDF"
+        )
 
 
 def _origin_keys(origins: refine.Origins) -> OriginKeys:

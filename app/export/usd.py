@@ -44,7 +44,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
             PIL.Image.fromarray(clip.scene.skin.albedo).save(picture)
         try:
             stage = Usd.Stage.CreateNew(str(layer))
-            _fill(stage, clip, request)
+            _fill_stage(stage, clip, request)
             stage.Save()
             is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(package))
             if is_made:
@@ -55,7 +55,7 @@ def write_usd(clip: Clip, part: Path, request: ExportRequest) -> None:
         raise OSError("the USD file is not complete; the disk may be full")
 
 
-def _fill(stage: Any, clip: Clip, request: ExportRequest) -> None:
+def _fill_stage(stage: Any, clip: Clip, request: ExportRequest) -> None:
     """Add the clip to the stage, with a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, METRES_PER_MILLIMETRE)

@@ -32,7 +32,7 @@ CALIBRATION_TIME = 0.5  # [s] of a neutral face
 LIVE_CHANNELS = (*ARKIT_SHAPES, *HEAD_ANGLES, *EYE_ANGLES, *VISEME_NAMES)
 
 
-class State(enum.Enum):
+class SenderState(enum.Enum):
     """The state of the sender."""
 
     WAITING = "waiting"  # no frame has come yet
@@ -89,13 +89,13 @@ class LiveFace(Receiver):
         return sum(1 for each in self._times if now - each < rated_time) / rated_time
 
     @property
-    def state(self) -> State:
+    def state(self) -> SenderState:
         """The state of the sender."""
         if self._last is None:
-            return State.WAITING
+            return SenderState.WAITING
         if self.silence > LOST_AFTER:
-            return State.LOST
-        return State.RECEIVING if self._has_face else State.NO_FACE
+            return SenderState.LOST
+        return SenderState.RECEIVING if self._has_face else SenderState.NO_FACE
 
     @property
     def presence(self) -> float:
@@ -105,7 +105,7 @@ class LiveFace(Receiver):
     @property
     def is_easing(self) -> bool:
         """Whether the presence is about to change."""
-        return self._share != (1.0 if self.state is State.RECEIVING else 0.0)
+        return self._share != (1.0 if self.state is SenderState.RECEIVING else 0.0)
 
     @property
     def is_calibrating(self) -> bool:
@@ -119,7 +119,7 @@ class LiveFace(Receiver):
         self.has_news = False
         for at, frame in self.new_frames():
             self._process(frame, at)
-        if self.state is State.RECEIVING:
+        if self.state is SenderState.RECEIVING:
             self._share = min(self._share + seconds / EASING_IN, 1.0)
         else:
             self._share = max(self._share - seconds / EASING_OUT, 0.0)

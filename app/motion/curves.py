@@ -51,7 +51,7 @@ def solved(
     known = _set_values(names, tables, controls or {}, len(frames), highest)
     rest = frames - _sums(known, weights, np.stack([tables.floors[name] for name in names]))
     found, where = np.unique(rest.round(9), axis=0, return_inverse=True)
-    values = _fitted(weights, highest, found)[where.ravel()]
+    values = _fitted_values(weights, highest, found)[where.ravel()]
     counted = dict(zip(names, np.clip(known + values, 0.0, highest).T, strict=True))
     return {name: _as_set(name, counted, tables) for name in names}
 
@@ -112,9 +112,9 @@ def _sums(values: Floats64, weights: Floats64, floors: Floats64) -> Floats64:
     return np.where(least > 0.0, np.maximum(sums, least), sums)
 
 
-def _fitted(weights: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
+def _fitted_values(weights: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     """Return the values (N, L) whose sums are nearest to the frames (N, C)."""
-    rays = _rays(weights)
+    rays = _parallel_groups(weights)
     strengths = np.linalg.norm(weights, axis=1)
     reach = np.array([(strengths[ray] * highest[ray]).sum() for ray in rays])
     directions = unit_vectors(np.stack([weights[ray].sum(axis=0) for ray in rays]))
@@ -131,7 +131,7 @@ def _fitted(weights: Floats64, highest: Floats64, frames: Floats64) -> Floats64:
     return values
 
 
-def _rays(weights: Floats64) -> list[list[int]]:
+def _parallel_groups(weights: Floats64) -> list[list[int]]:
     """Group controls with parallel weights (L, C), each group in order from weak to strong."""
     strengths = np.linalg.norm(weights, axis=1)
     lengths = np.maximum(np.outer(strengths, strengths), 1e-30)

@@ -34,7 +34,7 @@ from ..control_names.angles import FULL_ANGLES, GAZE_ANGLE
 from ..scenes import Face, Scene
 
 Values = dict[str, float]
-Place = tuple[float, float]  # to the left and up [degrees]
+GlancePlace = tuple[float, float]  # to the left and up [degrees]
 
 
 # Greatest idle motion of the head [degrees].
@@ -90,7 +90,7 @@ class Life:
                 return each, start
         return 0, -math.inf
 
-    def _glance(self, time: float) -> Place:
+    def _glance(self, time: float) -> GlancePlace:
         """Return the direction of gaze; a saccade leads from one target to the next."""
         glance_span = 1.6  # [s] for each glance
         number, start = self._latest(GLANCE_STREAM, glance_span, time)
@@ -105,7 +105,7 @@ class Life:
             before[1] + share * (there[1] - before[1]),
         )
 
-    def _place(self, number: int) -> Place:
+    def _place(self, number: int) -> GlancePlace:
         """Return the target of a glance, on the viewer's face or beside; the first is straight."""
         if number < 2:
             return 0.0, 0.0
@@ -205,10 +205,10 @@ def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
     # Horizontal and vertical angles [degrees]: a nearer viewer is followed, a farther one is not.
     followed_angles = (45.0, 32.0)
     lost_angles = (65.0, 45.0)
-    share = math.prod(map(_followed, aside, followed_angles, lost_angles))
+    share = math.prod(map(_follow_weight, aside, followed_angles, lost_angles))
     eye_angle = 10.0  # [degrees] off straight ahead, up to which the head stays
     head_fraction = 0.5  # share of the angle beyond it that the head turns
-    turn, rise = (share * head_fraction * _excess(angle, eye_angle) for angle in aside)
+    turn, rise = (share * head_fraction * _angle_beyond(angle, eye_angle) for angle in aside)
     to_rest = np.linalg.inv(face.bone_transforms()["cranium"])
     seen = (to_rest @ [*viewer, 1.0])[:3]  # the viewer in coordinates of the turned head
     eyes = {}
@@ -229,11 +229,11 @@ def _angles(direction: Floats64) -> tuple[float, float]:
     return math.degrees(math.atan2(x, z)), math.degrees(math.atan2(y, math.hypot(x, z)))
 
 
-def _excess(angle: float, least: float) -> float:
+def _angle_beyond(angle: float, least: float) -> float:
     return math.copysign(max(abs(angle) - least, 0.0), angle)
 
 
-def _followed(angle: float, whole: float, none: float) -> float:
+def _follow_weight(angle: float, whole: float, none: float) -> float:
     """Return 1 up to the angle `whole`, 0 above the angle `none`, and smooth values between."""
     left = min(max((none - abs(angle)) / (none - whole), 0.0), 1.0)
     return left * left * (3.0 - 2.0 * left)

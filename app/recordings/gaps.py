@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from risorius.geometry.arrays import Floats64
+from risorius.geometry.arrays import Floats64, Integers64
 
 from ..errors import UserError
 from ..text import counted
@@ -42,38 +42,54 @@ def take_from_rows(
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:
         raise UserError(f"{source}: {kind}: no frame shows a face; nothing can be played")
-    if not np.isfinite(times).any():
-        raise UserError(f"{source}: {kind}: no row has a time that can be read")
-    longest_take = 86_400.0  # [s]
-    known = np.flatnonzero(np.abs(times - np.nanmedian(times)) <= longest_take)
-    moments, first = np.unique(times[known], return_index=True)
-    kept = known[first]
+    kept = _rows_in_order(times, f"{source}: {kind}")
     if len(kept) < len(times):
         all_notes.append(_note_on_rows_left_out(len(times) - len(kept)))
-    times = moments - moments[0]
-    if times[-1] > longest_take:
-        raise UserError(
-            f"{source}: {kind}: lasts {times[-1]:.6g} s; a recording lasts a day at most"
-        )
+    times = times[kept] - times[kept[0]]
     rows = {name: values[kept] for name, values in channels.items()}
     seen = np.any([np.isfinite(values) for values in rows.values()], axis=0)
     if not seen.all():
         all_notes.append(
             f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
         )
-    holes = np.empty(0, dtype=np.intp) if has_keys else _holes(times)
+    holes = np.empty(0, dtype=np.intp) if has_keys else _gap_rows(times)
     if len(holes):
-        all_notes.append(_missing(np.diff(times)[holes]))
+        all_notes.append(_gap_sentence(np.diff(times)[holes]))
         times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
         rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
     filled = {
-        name: _filled(times, values) for name, values in rows.items() if np.isfinite(values).any()
+        name: _filled_gaps(times, values)
+        for name, values in rows.items()
+        if np.isfinite(values).any()
     }
     if not filled:
         raise UserError(f"{source}: {kind}: no frame shows a face with a time")
     return Take(
-        kind, source, times, filled, is_calibrated, tuple(all_notes), tuple(unknown), has_keys
+        kind=kind,
+        source=source,
+        times=times,
+        channels=filled,
+        is_calibrated=is_calibrated,
+        notes=tuple(all_notes),
+        unknown=tuple(unknown),
+        has_keys=has_keys,
     )
+
+
+def _rows_in_order(times: Floats64, recording: str) -> Integers64:
+    """Return the rows to keep in the order of their times [s], one row for each time.
+
+    Raises UserError, which names the recording, without any time or for more than a day.
+    """
+    if not np.isfinite(times).any():
+        raise UserError(f"{recording}: no row has a time that can be read")
+    longest_take = 86_400.0  # [s]
+    known = np.flatnonzero(np.abs(times - np.nanmedian(times)) <= longest_take)
+    moments, first = np.unique(times[known], return_index=True)
+    duration = moments[-1] - moments[0]
+    if duration > longest_take:
+        raise UserError(f"{recording}: lasts {duration:.6g} s; a recording lasts a day at most")
+    return known[first]
 
 
 def _note_on_rows_left_out(count: int) -> str:
@@ -82,7 +98,7 @@ def _note_on_rows_left_out(count: int) -> str:
     return f"{counted(count, 'row')} without a time {were} left out."
 
 
-def _missing(gaps: Floats64) -> str:
+def _gap_sentence(gaps: Floats64) -> str:
     """Return the report's sentence on missing rows; gaps: their durations [s]."""
     return (
         f"Rows are missing in {counted(len(gaps), 'place')}, {float(gaps.max()):.3g} s at most: "
@@ -90,7 +106,7 @@ def _missing(gaps: Floats64) -> str:
     )
 
 
-def _holes(times: Floats64) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+def _gap_rows(times: Floats64) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """Return the numbers of rows after which other rows are missing."""
     steps = np.diff(times)
     if len(steps) < 3:
@@ -100,7 +116,7 @@ def _holes(times: Floats64) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.flatnonzero(steps > longest)
 
 
-def _filled(times: Floats64, values: Floats64) -> Floats64:
+def _filled_gaps(times: Floats64, values: Floats64) -> Floats64:
     """Fill NaN in a channel: hold the value over a gap, with a straight line at the gap's end."""
     known = np.isfinite(values)
     if known.all():

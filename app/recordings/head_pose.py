@@ -54,7 +54,7 @@ def head_of(
         values = [frame.get(key) for frame in frames]
         matrices = [_matrix(value) for value in values]
         if all(matrix is None for matrix in matrices):
-            matrices = _turned(values, key, notes)
+            matrices = _matrices_of_quaternions(values, key, notes)
         if any(matrix is not None for matrix in matrices):
             unknown = (math.nan, math.nan, math.nan)
             turns = [unknown if matrix is None else angles_of(matrix) for matrix in matrices]
@@ -89,7 +89,9 @@ def _named_angles(
     return (found, used) if found else None
 
 
-def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Floats64 | None]:
+def _matrices_of_quaternions(
+    values: Sequence[Any], key: str, notes: list[str]
+) -> list[Floats64 | None]:
     """Convert quaternions to rotation matrices; None for a value that is not a quaternion."""
     quaternions = [_quaternion(value) for value in values]
     known = np.array([each for each in quaternions if each is not None])

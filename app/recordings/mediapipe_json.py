@@ -65,8 +65,8 @@ def _take_of(
     """Return the take in frames; each frame is a table with a face, or a list of faces."""
     notes: list[str] = []
     shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
-    keyed = [_flat(frame) for frame in frames]
-    times = _times(keyed, request.rate, _rate(document), notes)
+    keyed = [_values_beside_faces(frame) for frame in frames]
+    times = _times(keyed, request.rate, _frame_rate(document), notes)
     head, used = head_of(keyed, notes)
     lost = rows_without_face(_keys(keyed), lambda name: _texts(keyed, name), len(frames))
     shapes = shares(without_rows(shapes, lost), notes)
@@ -192,7 +192,7 @@ def _faces(frame: Any, depth: int = MOST_LEVELS) -> list[dict[str, float]]:
         if found:
             return [found]
         keys = _with_plain_keys(frame)
-        faces = _faces(_first(keys, FACE_KEYS), depth)
+        faces = _faces(_first_value(keys, FACE_KEYS), depth)
         if faces or depth <= 1:
             return faces
         inner = (_faces(item, depth - 1) for key, item in keys.items() if key not in FACE_KEYS)
@@ -205,7 +205,7 @@ def _faces(frame: Any, depth: int = MOST_LEVELS) -> list[dict[str, float]]:
     return []
 
 
-def _flat(frame: Any, depth: int = MOST_LEVELS) -> dict[str, Any]:
+def _values_beside_faces(frame: Any, depth: int = MOST_LEVELS) -> dict[str, Any]:
     """Return the keys and values of a frame without its faces, also from tables with faces."""
     if isinstance(frame, list):
         frame = frame[0] if len(frame) == 1 else {}
@@ -215,7 +215,7 @@ def _flat(frame: Any, depth: int = MOST_LEVELS) -> dict[str, Any]:
         if shape_of(key) or key in FACE_KEYS or value in ("", None) or value == []:
             continue
         if depth > 1 and isinstance(value, dict | list) and _faces(value, depth - 1):
-            found = _flat(value, depth - 1) | found
+            found = _values_beside_faces(value, depth - 1) | found
         else:
             found[key] = value
     return found
@@ -232,9 +232,9 @@ def _category(item: Any) -> tuple[str, float] | None:
     """Return name, as written, and score of a category; None for another item."""
     keys = _with_plain_keys(item)
     name_keys = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
-    name = _first(keys, name_keys)
+    name = _first_value(keys, name_keys)
     score_keys = ("score", "value", "weight")
-    score = _first(keys, score_keys)
+    score = _first_value(keys, score_keys)
     is_score = score is not None and not isinstance(score, dict | list)
     return (name, _number(score)) if isinstance(name, str) and is_score else None
 
@@ -295,9 +295,9 @@ def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
     ]
 
 
-def _rate(document: Any) -> float | None:
+def _frame_rate(document: Any) -> float | None:
     """Return the frames per second in the document or its header; None if there are none."""
-    rates = [_number(_first(table, RATE_KEYS)) for table in _tables(document)]
+    rates = [_number(_first_value(table, RATE_KEYS)) for table in _tables(document)]
     return next((rate for rate in rates if 1.0 <= rate <= 1000.0), None)
 
 
@@ -312,7 +312,7 @@ def _plain_name(key: str) -> str:
     return key.casefold().replace("_", "")
 
 
-def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
+def _first_value(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
     """Return the value of the first name that exists, or None if no name exists."""
     return next((keys[name] for name in names if name in keys), None)
 

@@ -94,7 +94,7 @@ ANGLE_BY_SPELLING = _angle_spellings()
 
 
 @dataclass(frozen=True)
-class Unit:
+class ActionUnitName:
     """An action unit that a column holds.
 
     side: "_left", "_right", or "" for both or unknown. is_short_right: whether the side is
@@ -113,7 +113,7 @@ class Unit:
         return f"AU{self.number}{side}"
 
 
-def unit_of(column: str) -> Unit | None:
+def unit_of(column: str) -> ActionUnitName | None:
     """Return the action unit that a column holds, by its name; None for other columns."""
     match = ACTION_UNIT.match(column.casefold())
     if match is None:
@@ -124,7 +124,7 @@ def unit_of(column: str) -> Unit | None:
         kind = "intensity" if match[3].startswith("int") else "detection"
     if match[2] == "c":
         kind = "detection"
-    return Unit(int(match[1]), sides.get(match[2] or "", ""), match[2] == "r", kind)
+    return ActionUnitName(int(match[1]), sides.get(match[2] or "", ""), match[2] == "r", kind)
 
 
 @functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame

@@ -35,7 +35,7 @@ DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.I
 
 
 @dataclass(frozen=True)
-class Layout:
+class TableLayout:
     """How the cells of a table are written.
 
     delimiter: the character between cells. quote: the character around cells that may hold the
@@ -167,14 +167,13 @@ def header_of(text: str) -> tuple[str, ...]:
     return _names_in(first, _layout_of(text, first))
 
 
-def _names_in(header: str, layout: Layout) -> tuple[str, ...]:
+def _names_in(header: str, layout: TableLayout) -> tuple[str, ...]:
     """Return the names in the first row; () if it is not a header."""
     names = tuple(cell.strip() for cell in _cells_of(header, layout))
     longest_name = 80  # [characters] of a column's name; a longer one is not a name
-    is_header = all(len(name) <= longest_name for name in names) and any(
-        re.search(r"[^\W\d]", name) for name in names
-    )
-    return names if is_header else ()
+    are_short = all(len(name) <= longest_name for name in names)
+    has_letters = any(re.search(r"[^\W\d]", name) for name in names)
+    return names if are_short and has_letters else ()
 
 
 def table_in(text: str, *, source: str) -> Table:
@@ -207,7 +206,14 @@ def table_in(text: str, *, source: str) -> Table:
             )
     notes += repeated_columns(names)
     numbers, _, lines = zip(*rows, strict=True)
-    return Table(source, names, [*lines], [*numbers], delimiter, notes)
+    return Table(
+        source=source,
+        names=names,
+        lines=[*lines],
+        line_numbers=[*numbers],
+        delimiter=delimiter,
+        notes=notes,
+    )
 
 
 def repeated_columns(names: Sequence[str]) -> list[str]:
@@ -233,7 +239,7 @@ def _is_empty(line: str) -> bool:
     return not line.strip(" ,;\t|\"'")
 
 
-def _layout_of(text: str, header: str) -> Layout:
+def _layout_of(text: str, header: str) -> TableLayout:
     """Detect the layout of a table from its header and the beginning of its text."""
     quote = "'" if header.lstrip().startswith("'") else '"'
     decimals_sought = 2**16  # characters of the text that are searched for a decimal comma
@@ -252,7 +258,7 @@ def _layout_of(text: str, header: str) -> Layout:
     )
 
 
-def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> Layout:
+def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> TableLayout:
     """Return the layout whose delimiter divides the header and the row below into most cells.
 
     A row may have one cell more or less than the header: a name of the row, or no cell after the
@@ -261,10 +267,10 @@ def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) 
     """
     rows = [line for _, line in sample if not _is_empty(line)]
     row = rows[1] if len(rows) > 1 else header
-    best = Layout(quote=quote)
+    best = TableLayout(quote=quote)
     worth = (False, 1)
     for delimiter in DELIMITERS:
-        layout = Layout(delimiter, quote)
+        layout = TableLayout(delimiter, quote)
         names = _cells_of(header, layout)
         cells = _cells_of(row, layout)
         count = len(names)
@@ -288,7 +294,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _cells_of(line: str, layout: Layout) -> list[str]:
+def _cells_of(line: str, layout: TableLayout) -> list[str]:
     """Return the cells in one line; [] if a cell is too long for the csv module."""
     try:
         return next((cells for _, cells in layout.rows_of([(1, line)])), [])
@@ -297,7 +303,7 @@ def _cells_of(line: str, layout: Layout) -> list[str]:
 
 
 def _cleaned(
-    numbered: Sequence[tuple[int, str]], layout: Layout, notes: list[str]
+    numbered: Sequence[tuple[int, str]], layout: TableLayout, notes: list[str]
 ) -> list[tuple[int, int, str]]:
     """Return line number, count of cells and text of each row, with `CELL_SEPARATOR` between cells.
 
@@ -316,11 +322,11 @@ def _cleaned(
         f"Quotes in {counted(len(lost), 'line')} {are} not closed, and the row was left out: "
         f"line {listed}."
     )
-    return [row for found in alone if found for row in found]
+    return [row for found in alone for row in found or ()]
 
 
 def _rows_in(
-    numbered: Sequence[tuple[int, str]], layout: Layout
+    numbered: Sequence[tuple[int, str]], layout: TableLayout
 ) -> list[tuple[int, int, str]] | None:
     """Return the rows for `_cleaned`; None if a quote is not closed within its row."""
     rows: list[tuple[int, int, str]] = []

@@ -1,4 +1,4 @@
-"""A recording of a face by any program: channels over time; and the request to a reader."""
+"""A recording of a face by any program as channels over time, and options for its reader."""
 
 from __future__ import annotations
 

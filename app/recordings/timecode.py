@@ -51,7 +51,7 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
         base = pace = max(base, 60.0)
         notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")
     is_dropping = has_semicolon or _jumps_at_minutes(seconds, numbers[known], base)
-    dropped = _dropped(parts[known], base) if is_dropping else 0
+    dropped = _dropped_per_minute(parts[known], base) if is_dropping else 0
     numbers[known] += seconds * base
     if dropped:
         minutes = seconds // 60.0
@@ -92,7 +92,7 @@ def _base_of(seconds: Floats64, numbers: Floats64) -> tuple[float, bool]:
     return min(fitting, key=lambda rate: abs(rate - count), default=usual), True
 
 
-def _dropped(parts: Floats64, base: float) -> int:
+def _dropped_per_minute(parts: Floats64, base: float) -> int:
     """Return how many frame numbers timecode leaves out at a minute; 0 if the file has them.
 
     parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.

@@ -177,7 +177,7 @@ def find_times(
             times = timecode_times(cells, rate, notes)
         elif rate is not None:
             continue
-        elif sum(_measured(cell) is not None for cell in sample) * 2 > len(sample):
+        elif sum(_seconds_with_unit(cell) is not None for cell in sample) * 2 > len(sample):
             times = stamp_times(np.array([_seconds_in(cell) for cell in cells]), notes, 1.0)
         elif sum(_is_clock(cell) for cell in sample) * 2 > len(sample):
             times = clock_times(cells, name, notes)
@@ -196,7 +196,7 @@ def _is_clock(cell: str) -> bool:
     return ":" in cell or COMPACT_CLOCK.match(cell) is not None
 
 
-def _measured(cell: str) -> float | None:
+def _seconds_with_unit(cell: str) -> float | None:
     """Return the seconds in `33 ms`, `0.033 s` or ISO 8601's `PT0.033S`; None for other cells."""
     if found := MEASURED_FORM.match(cell):
         spelled = found["unit"].casefold().replace("µ", "u").replace("μ", "u")
@@ -218,7 +218,7 @@ def _measured(cell: str) -> float | None:
 
 def _seconds_in(cell: str) -> float:
     """Return the seconds in a cell, with or without a unit; NaN for other cells."""
-    seconds = _measured(cell)
+    seconds = _seconds_with_unit(cell)
     if seconds is not None:
         return seconds
     try:

@@ -19,7 +19,7 @@ from risorius.geometry.arrays import Floats64
 from ..errors import UserError
 from ..scenes import FaceScene, build_face
 from ..script import Script
-from .bodies import Body, Shaped, Skin, bodies_of_parts, moving, poses_of
+from .bodies import Body, Shaped, SkinBody, bodies_of_parts, moving, poses_of
 from .file_body import FileBody, merged_vertices, with_own_tongue
 from .linearity import Difference, corrective_poses, table, worth_correcting
 from .linearity import corrected as corrected_shapes
@@ -104,10 +104,10 @@ class Avatar:
         return {"correctives": rules} if rules else {}
 
 
-Report = Callable[[str], None]
+PrintLine = Callable[[str], None]
 
 
-def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> Avatar:
+def avatar_of(head: FittedHead | None, request: RigRequest, report: PrintLine) -> Avatar:
     """Make the avatar of a head; None is the built-in head.
 
     The avatar of a head from a file includes all pieces of this file. `report` is called with lines
@@ -121,7 +121,7 @@ def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> A
     eyes_are_nodes = request.has_eye_nodes(is_gltf=file is not None and file.painted is None)
     bodies: list[Body] = []
     if file is None:
-        bodies.append(Skin(np.array(scene.rest_positions), scene.faces))
+        bodies.append(SkinBody(np.array(scene.rest_positions), scene.faces))
         bodies += bodies_of_parts(scene, eyes_are_nodes=eyes_are_nodes)
     else:
         bodies.append(file.body)
@@ -157,14 +157,22 @@ def avatar_of(head: FittedHead | None, request: RigRequest, report: Report) -> A
         sums.append(difference_on(take, scene, poses, pairs))
         report(f"error of sums of shapes in all frames of a take, {sums[-1]}")
     shapes = tuple(_without_sums(each, pairs, names) for each in moving(bodies, poses))
-    return Avatar(scene, file, shapes, names, tuple(pairs), eyes_are_nodes, tuple(sums))
+    return Avatar(
+        scene=scene,
+        file=file,
+        shapes=shapes,
+        names=names,
+        pairs=tuple(pairs),
+        eyes_are_nodes=eyes_are_nodes,
+        sums=tuple(sums),
+    )
 
 
 def _without_sums(shaped: Shaped, pairs: list[tuple[str, str]], names: tuple[str, ...]) -> Shaped:
     return corrected_shapes(shaped, pairs, names) if pairs else shaped
 
 
-def file_head(head: FittedHead, request: RigRequest, report: Report) -> FileHead:
+def file_head(head: FittedHead, request: RigRequest, report: PrintLine) -> FileHead:
     """Read the file of a fitted head, and find its pieces.
 
     Raises AssetError for unusable files, and UserError for wrong options.
@@ -202,7 +210,14 @@ def file_head(head: FittedHead, request: RigRequest, report: Report) -> FileHead
         report(f"skin behind the lips: {len(body.in_bag)} vertices, stretches between both jaws")
     for line in described(pieces):
         report(line)
-    return FileHead(head, body, tuple(pieces), painted, stored, path)
+    return FileHead(
+        head=head,
+        body=body,
+        pieces=tuple(pieces),
+        painted=painted,
+        stored=stored,
+        path=path,
+    )
 
 
 def _names_of_vertices(

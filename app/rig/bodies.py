@@ -15,7 +15,7 @@ from risorius.geometry.normals import vertex_normals
 from ..motion import tally
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
-from .poses import CRANIUM_BONE, Pose, moved_part, rest_in, settings_of
+from .poses import CRANIUM_BONE, FacePose, moved_part, rest_in, settings_of
 
 EYE_BONES = ("eye_left", "eye_right")  # names of bones
 LEAST_SHAPE_MOTION = 0.01  # [mm]; a shape leaves out smaller, invisible motion of a vertex
@@ -36,7 +36,7 @@ class Body(Protocol):
     @property
     def faces(self) -> Integers32: ...
 
-    def at(self, pose: Pose) -> Floats64:
+    def at(self, pose: FacePose) -> Floats64:
         """Return the vertices in a pose, relative to the body's node [mm], (V, 3)."""
         ...
 
@@ -46,14 +46,14 @@ class Body(Protocol):
 
 
 @dataclass(frozen=True)
-class Skin:
+class SkinBody:
     """The simulated skin of a scene."""
 
     rest: Floats64
     faces: Integers32
     name: str = "skin"
 
-    def at(self, pose: Pose) -> Floats64:
+    def at(self, pose: FacePose) -> Floats64:
         return pose.skin
 
     def normals_at(self, points: Floats64) -> Floats64:
@@ -79,7 +79,7 @@ class PartBody:
     def faces(self) -> Integers32:
         return np.asarray(self.part.faces, np.int32)
 
-    def at(self, pose: Pose) -> Floats64:
+    def at(self, pose: FacePose) -> Floats64:
         if self.bone != CRANIUM_BONE:
             return pose.parts[self.name].astype(np.float64)
         return moved_part(self.part, pose)
@@ -120,12 +120,12 @@ class Shaped:
     bends: Floats32
 
 
-def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[Pose, Pose]]) -> list[Shaped]:
+def moving(bodies: Iterable[Body], poses: Mapping[str, tuple[FacePose, FacePose]]) -> list[Shaped]:
     """Give bodies a shape for each pair of a pose and its reference pose."""
     return [_shaped(body, poses) for body in bodies]
 
 
-def _shaped(body: Body, poses: Mapping[str, tuple[Pose, Pose]]) -> Shaped:
+def _shaped(body: Body, poses: Mapping[str, tuple[FacePose, FacePose]]) -> Shaped:
     normals = body.normals_at(body.rest)
     shape = (len(poses), *body.rest.shape)
     targets = np.zeros(shape, np.float32)
@@ -154,9 +154,9 @@ def bent_normals(body: Body, moved: Floats64, before: Floats64) -> Floats64:
 
 def poses_of(
     scene: FaceScene, names: Sequence[str], *, progress: bool
-) -> Iterator[tuple[str, tuple[Pose, Pose]]]:
+) -> Iterator[tuple[str, tuple[FacePose, FacePose]]]:
     """Yield the name of each shape, its pose at 1 and its reference pose."""
-    bases: dict[tuple[str, ...], Pose] = {}
+    bases: dict[tuple[str, ...], FacePose] = {}
     bar = tqdm(names, "Shapes", unit="shape", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for name in bar:

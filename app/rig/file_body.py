@@ -28,7 +28,7 @@ from ..scenes.bent_part import FaceNow
 from ..scenes.skin_part import SkinPart
 from .bodies import EYE_BONES
 from .pieces import FilePiece
-from .poses import CRANIUM_BONE, Pose
+from .poses import CRANIUM_BONE, FacePose
 
 LIP_HEIGHT = 10.0  # [mm]; height over which motion changes from one jaw to the other
 ROOT_TOLERANCE = 1.5  # [mm]; how much farther from the skin than the nearest root lashes may begin
@@ -61,10 +61,10 @@ class FileBody:
         is_simulated = np.zeros(len(same), np.bool_)
         is_simulated[head.file_vertices] = True
         self._same = np.where(is_simulated, np.arange(len(same)), same)
-        self._pieces = {
-            role: np.concatenate([piece.vertices for piece in pieces if piece.role == role])
-            for role in {piece.role for piece in pieces}
-        }
+        by_role: dict[str, list[npt.NDArray[np.integer]]] = {}
+        for each in pieces:
+            by_role.setdefault(each.role, []).append(each.vertices)
+        self._pieces = {role: np.concatenate(vertices) for role, vertices in by_role.items()}
         self._eyes_are_nodes = eyes_are_nodes
         self.pivots: dict[str, Floats64] = {}
         for eye in head.eyes:
@@ -88,7 +88,7 @@ class FileBody:
             self._bag = _Bag(hidden, is_eye, self.faces, self.rest)
         self._lashes = self._attached(head) if "on_skin" in self._pieces else None
 
-    def at(self, pose: Pose) -> Floats64:
+    def at(self, pose: FacePose) -> Floats64:
         """Return the vertices in a pose [mm], (V, 3)."""
         moved = self.rest.copy()
         moved[self._skin] = pose.skin[self._place[self._skin]]
@@ -231,4 +231,13 @@ def _part(
     """Make a part of points [mm] (n, 3) and faces (m, 3)."""
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))
     normals = vertex_normals(points, faces).astype(np.float32)
-    return Part(name, points.astype(np.float32), normals, faces, colours, bone, 0.5, roots)
+    return Part(
+        name=name,
+        vertices=points.astype(np.float32),
+        normals=normals,
+        faces=faces,
+        colours=colours,
+        bone=bone,
+        shine=0.5,
+        roots=roots,
+    )

@@ -168,11 +168,11 @@ class Glb:
         scene = self.parts["scenes"][self.parts.get("scene", 0)]
         if roots:
             scene["nodes"] = [*scene.get("nodes", []), *roots]
-        numbers = _padded(bytes(self._numbers), b"\0")
+        numbers = _padded_bytes(bytes(self._numbers), b"\0")
         first = self.parts.get("buffers", [{}])[0]
         parts = {**self.parts, "buffers": [{**first, "byteLength": len(numbers)}]}
         text = json.dumps(parts, separators=(",", ":"), allow_nan=False).encode()
-        chunks = ((b"JSON", _padded(text, b" ")), (b"BIN\0", numbers))
+        chunks = ((b"JSON", _padded_bytes(text, b" ")), (b"BIN\0", numbers))
         body = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in chunks)
         return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
@@ -192,5 +192,5 @@ def picture_kind(content: bytes) -> str | None:
     return next((kind for start, kind in kinds.items() if content.startswith(start)), None)
 
 
-def _padded(data: bytes, filler: bytes) -> bytes:
+def _padded_bytes(data: bytes, filler: bytes) -> bytes:
     return data + filler * (-len(data) % CHUNK_ALIGNMENT)

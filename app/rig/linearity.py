@@ -24,7 +24,7 @@ from ..control_names import twin_of
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
 from .bodies import Shaped
-from .poses import Pose, rest_in
+from .poses import FacePose, rest_in
 
 CHOSEN_SUMS = (  # sums of shapes that move the same skin
     ("jawOpen", "mouthPucker"),
@@ -63,7 +63,7 @@ class Sums:
     def __init__(
         self,
         scene: FaceScene,
-        poses: Mapping[str, tuple[Pose, Pose]],
+        poses: Mapping[str, tuple[FacePose, FacePose]],
         corrected: Sequence[tuple[str, str]] = (),
     ) -> None:
         self._scene = scene
@@ -121,7 +121,7 @@ class Sums:
 
 def table(
     scene: FaceScene,
-    poses: Mapping[str, tuple[Pose, Pose]],
+    poses: Mapping[str, tuple[FacePose, FacePose]],
     corrected: Sequence[tuple[str, str]] = (),
 ) -> list[Difference]:
     """Return the errors of CHOSEN_SUMS whose shapes exist; arguments as in `Sums`."""
@@ -130,7 +130,7 @@ def table(
 
 
 def worth_correcting(
-    scene: FaceScene, poses: Mapping[str, tuple[Pose, Pose]], count: int, *, progress: bool
+    scene: FaceScene, poses: Mapping[str, tuple[FacePose, FacePose]], count: int, *, progress: bool
 ) -> list[tuple[str, str]]:
     """Return at most `count` pairs of shapes whose sums have the greatest errors, greatest first.
 
@@ -147,7 +147,7 @@ def worth_correcting(
 
 def corrective_poses(
     scene: FaceScene, pairs: Sequence[tuple[str, str]]
-) -> dict[str, tuple[Pose, Pose]]:
+) -> dict[str, tuple[FacePose, FacePose]]:
     """Return for each pair the pose with both shapes at 1, and the rest pose; see `corrected`."""
     rest = rest_in(scene, {})
     return {

@@ -44,7 +44,7 @@ def write_obj_folder(avatar: Avatar, folder: Path) -> None:
         if text is None or file is None:
             path.write_text(_triangles(avatar, changes), encoding="utf-8")
         else:
-            path.write_bytes(_rewritten(text, file, changes[0]))
+            path.write_bytes(_moved_obj(text, file, changes[0]))
 
 
 def _shapes(avatar: Avatar) -> Iterator[tuple[str, list[Floats64]]]:
@@ -163,7 +163,7 @@ def _cut_polygons(
     return [[(place, vertex) for place in range(len(corners)) for vertex in becomes[place]]]
 
 
-def _rewritten(text: bytes, file: FileHead, change: Floats64) -> bytes:
+def _moved_obj(text: bytes, file: FileHead, change: Floats64) -> bytes:
     """Return an OBJ with moved vertices; change: displacements of the vertices [mm], (V, 3)."""
     assert file.painted is not None
     moved = file.head.to_millimetres.inverse.vectors(change)

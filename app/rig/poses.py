@@ -23,7 +23,7 @@ HEAD_CONTROLS = frozenset(("head_yaw", "head_pitch", "head_roll"))
 
 
 @dataclass(frozen=True)
-class Pose:
+class FacePose:
     """A face at one moment, relative to its cranium.
 
     skin: vertices [mm], (V, 3).
@@ -36,12 +36,12 @@ class Pose:
     parts: Mapping[str, Floats32]
 
 
-def pose_of(scene: FaceScene) -> Pose:
+def pose_of(scene: FaceScene) -> FacePose:
     """Return the current pose of a scene."""
     bones = scene.bone_transforms()
     to_cranium = np.linalg.inv(bones[CRANIUM_BONE])
     weights = scene.face.head_weight
-    return Pose(
+    return FacePose(
         without_head_pose(np.array(scene.positions), bones[CRANIUM_BONE], weights),
         {name: to_cranium @ matrix for name, matrix in bones.items()},
         {part.name: part.vertices for part in scene.parts},
@@ -57,7 +57,7 @@ def without_head_pose(skin: Floats64, cranium: Floats64, weights: Floats64) -> F
     return np.asarray(np.linalg.solve(turns, unmoved)[:, :, 0])
 
 
-def rest_in(scene: FaceScene, values: Mapping[str, float]) -> Pose:
+def rest_in(scene: FaceScene, values: Mapping[str, float]) -> FacePose:
     """Return the pose in which a face comes to rest with some controls; all others are 0.
 
     The face starts from rest each time, so a pose does not depend on earlier poses.
@@ -110,7 +110,7 @@ def settings_of(scene: FaceScene, name: str) -> tuple[dict[str, float], dict[str
     return {**base, name: 1.0}, base
 
 
-def moved_part(part: Any, pose: Pose) -> Floats64:
+def moved_part(part: Any, pose: FacePose) -> Floats64:
     """Return the vertices of a part in a pose, relative to the cranium [mm], (n, 3)."""
     points = pose.parts[part.name].astype(np.float64)
     return moved_points(pose.matrices[part.bone], points)

@@ -22,7 +22,7 @@ from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from .curves import shape_curves
 from .linearity import CANDIDATE_COUNT, Difference, Sums
-from .poses import Pose, pose_of, rest_in
+from .poses import FacePose, pose_of, rest_in
 
 FRAMES_PER_SECOND = 15.0  # rate at which the take is sampled
 
@@ -66,7 +66,7 @@ def played_take(scene: FaceScene, script: Script) -> PlayedTake:
 def worth_correcting_on(
     take: PlayedTake,
     scene: FaceScene,
-    poses: Mapping[str, tuple[Pose, Pose]],
+    poses: Mapping[str, tuple[FacePose, FacePose]],
     count: int,
     *,
     progress: bool,
@@ -102,10 +102,10 @@ def worth_correcting_on(
         at_once = {name: float(curve[frame]) for name, curve in weights.items()}
         error = displacement - sums.sum(at_once)
         along[frame] = (area_weights * error).ravel() @ columns
-    return _greediest(tried, products, along, columns.T @ columns, count)
+    return _choose_greedily(tried, products, along, columns.T @ columns, count)
 
 
-def _greediest(
+def _choose_greedily(
     pairs: Sequence[tuple[str, str]],
     products: Floats64,
     along: Floats64,
@@ -133,7 +133,7 @@ def _greediest(
 def difference_on(
     take: PlayedTake,
     scene: FaceScene,
-    poses: Mapping[str, tuple[Pose, Pose]],
+    poses: Mapping[str, tuple[FacePose, FacePose]],
     pairs: Sequence[tuple[str, str]] = (),
 ) -> Difference:
     """Return the errors of sums on a take: the greatest, and the RMS over frames and skin.

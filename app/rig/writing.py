@@ -13,7 +13,7 @@ from risorius.assets.gltf_file import GltfFile
 from risorius.geometry.arrays import Floats64
 
 from ..files import folder_atomically, written_atomically
-from .avatar import Avatar, FileHead, Report, RigRequest, avatar_of
+from .avatar import Avatar, FileHead, PrintLine, RigRequest, avatar_of
 from .bodies import EYE_BONES
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
@@ -45,7 +45,9 @@ def write_avatar(avatar: Avatar, output: Path, title: str, *, is_folder: bool) -
     return len(content), len(read_document(content, Path())[0]["meshes"])
 
 
-def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, report: Report) -> None:
+def make_avatar(
+    head: FittedHead | None, output: Path, request: RigRequest, report: PrintLine
+) -> None:
     """Make the avatar of a head, and write it; None is the built-in head."""
     title = head.files[0].stem if head is not None and head.files else output.stem
     write_avatar(avatar_of(head, request, report), output, title, is_folder=False)
@@ -54,7 +56,7 @@ def make_avatar(head: FittedHead | None, output: Path, request: RigRequest, repo
 def avatar_glb(avatar: Avatar, title: str) -> bytes:
     """Return the bytes of the glTF file of an avatar; title: title of the head."""
     if avatar.file is not None and avatar.file.painted is None:
-        return _copied(avatar, avatar.file, title)
+        return _copied_gltf(avatar, avatar.file, title)
     glb = Glb()
     if avatar.file is None:
         roots = _add_scene(glb, avatar)
@@ -68,7 +70,7 @@ def avatar_glb(avatar: Avatar, title: str) -> bytes:
     return glb.to_bytes(title, roots)
 
 
-def _copied(avatar: Avatar, file: FileHead, title: str) -> bytes:
+def _copied_gltf(avatar: Avatar, file: FileHead, title: str) -> bytes:
     """Return a copy of a glTF file with the shapes of an avatar, and with its built-in parts."""
     content = file.path.read_bytes()
     glb = Glb(None, *read_document(content, file.path.parent))

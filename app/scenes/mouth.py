@@ -45,7 +45,7 @@ LIGHTEST_GUM = np.array([0.83, 0.53, 0.51])  # sRGB, without shade: the lightest
 GUM_SHADE_EXPONENT = 0.35
 
 
-class Tongue(FacePart):
+class DrawnTongue(FacePart):
     """The tongue, which is darker toward the back."""
 
     shape: Floats64 | None = None  # array of the last `follow`
@@ -96,7 +96,7 @@ def shaded_mouth(parts: Sequence[Part]) -> tuple[HeadPart, ...]:
     def shaded(part: Part) -> HeadPart:
         """Return a darkened part of the mouth, or another part unchanged."""
         if part.name == "tongue":
-            return Tongue(part, float(front))
+            return DrawnTongue(part, float(front))
         if part.mandible_shares is not None and part.name != MASK_NAME:
             return MouthWalls(part, part.mandible_shares)
         if not part.name.startswith(MOUTH_PART_NAMES):

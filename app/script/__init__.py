@@ -125,7 +125,7 @@ class Channel:
     def value(self, time: float) -> float:
         """Return the eased value at `time` [s]; it is constant before and after all keys."""
         times, values, easings = self._parts
-        previous, following, fraction = _between(times, time)
+        previous, following, fraction = _span_around(times, time)
         start = values[previous]
         slope, arrival, is_held = easings[3 * following : 3 * following + 3]
         eased = fraction // 1.0 if is_held else hermite(fraction, slope / 10, arrival / 10)
@@ -245,7 +245,7 @@ class Script:
         """Return the values of the poses at `time` [s], in the order of `posed_names`."""
         if not self.posed_names:
             return np.zeros(0)
-        before, after, fraction = _between(self._pose_times, time)
+        before, after, fraction = _span_around(self._pose_times, time)
         start = self._pose_rows[before]
         end = self._pose_rows[after]
         easing = easing_named(self.poses[after].easing)
@@ -306,7 +306,7 @@ class Script:
             )
 
 
-def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
+def _span_around(times: Sequence[float], time: float) -> tuple[int, int, float]:
     """Return the indices of the times before and after `time` [s], and the fraction between them.
 
     Before the first time both indices are the first, after the last time both are the last.

@@ -25,7 +25,7 @@ FRAME_TIME = 1.0 / 30.0  # [s] to which times are rounded; films of the window h
 EQUAL_TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
-Columns = tuple[npt.NDArray[Any], ...]
+KeyColumns = tuple[npt.NDArray[Any], ...]
 Values = Mapping[str, float]
 ScriptAndKeys = tuple[Script, KeySet]  # a script, and some of its keys
 
@@ -81,13 +81,13 @@ def moved(
     before = _columns(script, chosen)
     for name, columns in _columns(source or script, chosen).items():
         is_chosen = is_any_of(columns[0], chosen.times[name])
-        times, *rest = _picked(columns, is_chosen)
+        times, *rest = _chosen_keys(columns, is_chosen)
         arrived[name] = np.round(times + shift, SCRIPT_DECIMALS)
-        nothing = _picked(columns, np.arange(0))
-        there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
-        changed[name] = _joined(there, (arrived[name], *rest))
+        nothing = _chosen_keys(columns, np.arange(0))
+        there = before.get(name, nothing) if source else _chosen_keys(columns, ~is_chosen)
+        changed[name] = _merged_keys(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
-    return _reaching(_with_tracks(script, changed), *ends), KeySet(arrived)
+    return _extended_to(_with_tracks(script, changed), *ends), KeySet(arrived)
 
 
 def without_keys(script: Script, chosen: KeySet) -> Script:
@@ -96,7 +96,7 @@ def without_keys(script: Script, chosen: KeySet) -> Script:
     left = _with_tracks(
         script,
         {
-            name: _picked(each, ~is_any_of(each[0], chosen.times[name]))
+            name: _chosen_keys(each, ~is_any_of(each[0], chosen.times[name]))
             for name, each in columns.items()
         },
     )
@@ -166,7 +166,7 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     changed = differing(script, time, values)
     if script.tracks and not script.poses:
         keys = {name: values[name] for name in sorted(changed or script.tracks)}
-        return _with_track_keys(_reaching(script, time), time, keys)
+        return _with_track_keys(_extended_to(script, time), time, keys)
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
     possible = values.limits.pose(wanted)
     posed = {name: rounded(possible[name]) for name in wanted}
@@ -180,9 +180,9 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
         pose = replace(present, values=nonzero)
     else:
         pose = Pose(time, nonzero, _easing_at(script.poses, time), None)
-    poses = _joined(_pose_columns(script.poses), _pose_columns([pose]))
+    poses = _merged_keys(_pose_columns(script.poses), _pose_columns([pose]))
     with_pose = _with_tracks(script, {POSE_TRACK: poses})
-    return _reaching(_with_track_keys(with_pose, time, keys), time)
+    return _extended_to(_with_track_keys(with_pose, time, keys), time)
 
 
 def with_keys_of(
@@ -214,7 +214,7 @@ def with_keys_of(
     later = [pose.time for pose in script.poses if pose.time > time + EQUAL_TOLERANCE]
     for end in (*earlier[-1:], *later[:1]):
         script = _with_track_keys(script, end, new)
-    return _reaching(_with_track_keys(script, time, keys), time)
+    return _extended_to(_with_track_keys(script, time, keys), time)
 
 
 def _with_track_keys(script: Script, time: float, values: Values) -> Script:
@@ -228,7 +228,9 @@ def _with_track_keys(script: Script, time: float, values: Values) -> Script:
         after = present if len(present) else later
         easing = track.easing(after[0]).name if len(after) else "smooth"
         key = Key(key_time, rounded(value), easing)
-        changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.from_keys([key])))
+        changed[name] = _merged_keys(
+            _channel_columns(track), _channel_columns(Channel.from_keys([key]))
+        )
     return _with_tracks(script, changed)
 
 
@@ -240,7 +242,7 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 # Construction
 
 
-def _columns(script: Script, chosen: KeySet) -> dict[str, Columns]:
+def _columns(script: Script, chosen: KeySet) -> dict[str, KeyColumns]:
     """Return all keys of each track that has a chosen key."""
     columns = {POSE_TRACK: _pose_columns(script.poses)} if POSE_TRACK in chosen.times else {}
     return columns | {
@@ -250,31 +252,31 @@ def _columns(script: Script, chosen: KeySet) -> dict[str, Columns]:
     }
 
 
-def _channel_columns(track: Channel) -> Columns:
+def _channel_columns(track: Channel) -> KeyColumns:
     return track.times, track.values, track.easings
 
 
-def _pose_columns(poses: Sequence[Pose]) -> Columns:
+def _pose_columns(poses: Sequence[Pose]) -> KeyColumns:
     column = np.empty(len(poses), object)
     column[:] = poses
     return np.array([pose.time for pose in poses]), column
 
 
-def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
+def _chosen_keys(columns: KeyColumns, which: npt.NDArray[Any]) -> KeyColumns:
     """Select keys; which: flags or indices."""
     return tuple(column[which] for column in columns)
 
 
-def _joined(there: Columns, arriving: Columns) -> Columns:
+def _merged_keys(there: KeyColumns, arriving: KeyColumns) -> KeyColumns:
     """Merge keys in the order of time; an arriving key replaces an old key at the same time."""
-    left = _picked(there, ~is_any_of(there[0], arriving[0], EQUAL_TOLERANCE))
+    left = _chosen_keys(there, ~is_any_of(there[0], arriving[0], EQUAL_TOLERANCE))
     if not len(left[0]):
         return arriving
     both = tuple(np.concatenate(pair) for pair in zip(left, arriving, strict=True))
-    return _picked(both, np.argsort(both[0], kind="stable"))
+    return _chosen_keys(both, np.argsort(both[0], kind="stable"))
 
 
-def _with_tracks(script: Script, changed: Mapping[str, Columns]) -> Script:
+def _with_tracks(script: Script, changed: Mapping[str, KeyColumns]) -> Script:
     """Replace the keys of some tracks; remove a track without keys."""
     poses = script.poses
     tracks = dict(script.tracks)
@@ -289,6 +291,6 @@ def _with_tracks(script: Script, changed: Mapping[str, Columns]) -> Script:
     return replace(script, poses=poses, tracks=tracks)
 
 
-def _reaching(script: Script, *times: float) -> Script:
+def _extended_to(script: Script, *times: float) -> Script:
     """Extend a script that ends before one of these times [s]."""
     return replace(script, duration=max([script.duration, *times]))

@@ -99,13 +99,13 @@ class Recorder:
             keys.append(Key(end, self._track_value(name, end), "linear"))
         if start:
             last = head[-1].time if head else start
-            keys[:1] = _along(old, last, start)
+            keys[:1] = _keys_between(old, last, start)
         if tail and len(tail) < len(old):
-            tail[:1] = _along(old, end, tail[0].time)
+            tail[:1] = _keys_between(old, end, tail[0].time)
         return Channel.from_keys([*head, *keys, *tail])
 
 
-def _along(track: Channel, first: float, last: float) -> list[Key]:
+def _keys_between(track: Channel, first: float, last: float) -> list[Key]:
     """Return keys that follow a track from one time to another [s], between two of its keys."""
     following = int(np.searchsorted(track.times, last))
     easing = track.easing(following).name if following < len(track) else "linear"

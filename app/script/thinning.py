@@ -35,12 +35,12 @@ def thinned(
     samples = np.array(values, np.float64)[is_later]
     decimals = math.ceil(-math.log10(0.1 * tolerance))
     ends = samples.round(decimals) + 0.0  # turns -0.0 into 0.0
-    kept = _corners(moments, samples, ends, tolerance)
+    kept = _mark_corners(moments, samples, ends, tolerance)
     return Channel(moments[kept], ends[kept], "linear")
 
 
 @njit
-def _corners(times: Floats64, values: Floats64, ends: Floats64, tolerance: float) -> Flags:
+def _mark_corners(times: Floats64, values: Floats64, ends: Floats64, tolerance: float) -> Flags:
     """Return which samples become keys, shape (T,); a key has the value in `ends`."""
     count = len(times)
     is_corner = np.zeros(count, np.bool_)

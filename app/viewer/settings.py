@@ -56,7 +56,7 @@ TONE_ANGLES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 FRAMES_KIND = "frames"  # pictures in a folder
 
 
-class Kind(NamedTuple):
+class ExportKind(NamedTuple):
     """One kind of export. suffix: suffix of the file, "" for a folder. fastest: [frames/s]."""
 
     title: str
@@ -67,12 +67,12 @@ class Kind(NamedTuple):
 
 
 EXPORT_KINDS = {
-    end[1:]: Kind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()
+    end[1:]: ExportKind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()
 }
-EXPORT_KINDS[FRAMES_KIND] = Kind("Pictures in a folder (.png)", "", True, True)
+EXPORT_KINDS[FRAMES_KIND] = ExportKind("Pictures in a folder (.png)", "", True, True)
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
-    EXPORT_KINDS[_each.name] = Kind(
+    EXPORT_KINDS[_each.name] = ExportKind(
         f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False
     )
 

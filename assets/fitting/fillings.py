@@ -61,7 +61,7 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
     triangles = []
     for name, chains in OPENING_LANDMARKS.items():
         corners = [number for chain in chains for number in chain[:-1]]
-        upper, lower = (_smooth(points[list(chain)]) for chain in chains)
+        upper, lower = (_smooth_curve(points[list(chain)]) for chain in chains)
         found = own[_filling(vertices, mesh.faces[own], points[corners], upper, lower)]
         if not len(found) and name.endswith("eye"):
             found = own[_sheet(vertices, mesh.faces[own], points[corners], upper, lower)]
@@ -71,7 +71,7 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
     return Filling(np.concatenate(triangles), tuple(openings)) if openings else None
 
 
-def _smooth(points: Floats64) -> Floats64:
+def _smooth_curve(points: Floats64) -> Floats64:
     """Return points (33, 3) of a curve without overshoot through points (n, 3)."""
     place_count = 33
     lengths = arc_lengths(points)
@@ -108,7 +108,7 @@ def _filling(
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
         if _is_polygon(faces[found]):
-            return found if _reaches(vertices[faces[found]], around, width) else none
+            return found if _covers_opening(vertices[faces[found]], around, width) else none
     return none
 
 
@@ -136,11 +136,11 @@ def _sheet(
         inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
         found = _without_teeth(faces, inside)
         if _is_disc(faces[found]):
-            return found if _reaches(vertices[faces[found]], around, width) else none
+            return found if _covers_opening(vertices[faces[found]], around, width) else none
     return none
 
 
-def _reaches(corners: Floats64, around: Floats64, width: float) -> bool:
+def _covers_opening(corners: Floats64, around: Floats64, width: float) -> bool:
     """Whether triangles (m, 3, 3) have corners near all landmarks (n, 3) of an opening."""
     off = scipy.spatial.cKDTree(corners.reshape(-1, 3)).query(around)[0]
     return bool(off.max() < 0.2 * width)

@@ -62,7 +62,7 @@ from .mouth_walls import FittedSkin, opened_jaws
 from .neck_fading import fading_last, neck_fade
 from .organs import place_eyes, place_parts, with_eyelid_rims
 from .own_lip import nearest_own
-from .painting import Layout, drawn_over, maps_in, own_picture, own_skin, spread_uv
+from .painting import TextureLayout, drawn_over, maps_in, own_picture, own_skin, spread_uv
 from .topologies import recognised
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
@@ -206,7 +206,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     skin = skin_of(mesh.vertices, faces, landmarks)
     check_manifold(faces[skin.file_faces])
     similarity = placed(points, known)
-    skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
+    skin = _checked_skin(replace(skin, vertices=similarity.points(skin.vertices)))
     own = None
     if mesh.texture is not None:
         own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
@@ -220,11 +220,11 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         count = len(coarse.faces)
         notes += (f"its {len(skin.faces)} triangles follow a simplified mesh of {count}",)
         carried = _carried_over(known, coarse, target, pieces, jaw)
-        simplified = _simulated(known, coarse, carried, jaw)
+        simplified = _simulated_head(known, coarse, carried, jaw)
         carried = _on_finer(carried, coarse, skin)
     else:
         carried = _carried_over(known, skin, target, pieces, jaw)
-    layout, albedo, maps = _painted(mesh, own, skin, Layout(carried.uv, skin.faces))
+    layout, albedo, maps = _skin_layout(mesh, own, skin, TextureLayout(carried.uv, skin.faces))
     wrinkles, segments, light = maps
     order = fading_last(skin.vertices, skin.faces, skin.landmarks)
     return FittedHead(
@@ -308,7 +308,7 @@ def _carried_over(
     )
 
 
-def _simulated(
+def _simulated_head(
     known: Head, coarse: SkinPiece, carried: _Carried, jaw: _Jaw
 ) -> simplifying.SimulatedHead:
     """Make the simulated head of a simplified mesh."""
@@ -339,7 +339,7 @@ def _on_finer(carried: _Carried, coarse: SkinPiece, fine: SkinPiece) -> _Carried
     )
 
 
-def _sound(skin: SkinPiece) -> SkinPiece:
+def _checked_skin(skin: SkinPiece) -> SkinPiece:
     """Check a skin [mm], turn it outward, and remove a bag behind its lips.
 
     Raises AssetError for an unusable skin.
@@ -351,12 +351,12 @@ def _sound(skin: SkinPiece) -> SkinPiece:
     return without_bag(skin)
 
 
-def _painted(
+def _skin_layout(
     mesh: Mesh,
-    own: tuple[Image, Layout] | None,
+    own: tuple[Image, TextureLayout] | None,
     skin: SkinPiece,
-    built_in: Layout,
-) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
+    built_in: TextureLayout,
+) -> tuple[TextureLayout, Image, tuple[Wrinkles, Image, Image]]:
     """Return layout and texture of the skin, and maps in this layout (see `maps_in`).
 
     own: texture of the file, and its layout; None if the file has no texture. built_in: layout of

@@ -27,8 +27,8 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     eyes = (landmarks[36] + landmarks[45]) / 2.0
     places = (vertices - eyes) / scale
     is_near = (np.abs(places[:, 1] + 20.0) < 60.0) & (places[:, 2] > -150.0)
-    points = _spread(places, faces[is_near[faces].all(axis=1)])
-    found = [_ear(points * (side, 1.0, 1.0)) for side in (-1.0, 1.0)]
+    points = _dense_points(places, faces[is_near[faces].all(axis=1)])
+    found = [_ear_place(points * (side, 1.0, 1.0)) for side in (-1.0, 1.0)]
     ears = [ear for ear in found if ear is not None]
     if not ears:
         return None
@@ -69,7 +69,7 @@ def with_human_opening(
     return {**rig, "jaw": jaw}
 
 
-def _spread(points: Floats64, faces: Integers32) -> Floats64:
+def _dense_points(points: Floats64, faces: Integers32) -> Floats64:
     """Return points on triangles, (n, 3), so dense that every section contains some."""
     sixths = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]  # barycentric coordinates
     corners = points[faces]
@@ -77,7 +77,7 @@ def _spread(points: Floats64, faces: Integers32) -> Floats64:
     return np.concatenate(spread)
 
 
-def _ear(points: Floats64) -> tuple[float, float] | None:
+def _ear_place(points: Floats64) -> tuple[float, float] | None:
     """Find the height of the left ear's centre, and z of its front, relative to the eyes [mm].
 
     points: relative to the eyes [mm], (n, 3). None if fewer than five sections show an ear.
@@ -87,7 +87,7 @@ def _ear(points: Floats64) -> tuple[float, float] | None:
     fronts = np.full(len(heights), np.nan)
     for row, height in enumerate(heights):
         section = points[np.abs(points[:, 1] - height) < 2.5]
-        fronts[row] = _front(_outline(section, depths), depths)
+        fronts[row] = _ear_front(_outline(section, depths), depths)
     has_ear = ~np.isnan(fronts)
     if has_ear.sum() < 5:
         return None
@@ -109,7 +109,7 @@ def _outline(section: Floats64, depths: Floats64) -> Floats64:
     return np.asarray(np.interp(-depths, -depths[known], reach[known], right=0.0))
 
 
-def _front(reach: Floats64, depths: Floats64) -> float:
+def _ear_front(reach: Floats64, depths: Floats64) -> float:
     """Find the depth of an ear's front [mm], where the outline jumps outward; NaN without ear."""
     for row in range(4, len(depths) - 12):
         leap = reach[row] - reach[row - 4]

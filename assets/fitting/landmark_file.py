@@ -232,7 +232,7 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
 
 
 @dataclass(frozen=True)
-class Group:
+class LandmarkGroup:
     """A group of consecutive landmarks."""
 
     name: str
@@ -250,21 +250,23 @@ class Group:
 
 
 LANDMARK_GROUPS = (
-    Group("jaw line", 0, 17, "from the subject's right ear over the chin to the left ear"),
-    Group("right brow", 17, 5, "from outside in"),
-    Group("left brow", 22, 5, "from inside out"),
-    Group("bridge of the nose", 27, 4, "downward"),
-    Group("base of the nose", 31, 5, "from right to left"),
-    Group("right eye", 36, 6, "from its outer corner over the upper lid"),
-    Group("left eye", 42, 6, "from its inner corner over the upper lid"),
-    Group("outer border of the lips", 48, 12, "from the right corner over the upper lip"),
-    Group("inner border of the lips", 60, 8, "from the right corner over the upper lip"),
-    Group("two brows", 17, 10, "the right brow from outside in, then the left from inside out"),
-    Group("two eyes", 36, 12, "first the subject's right eye, then the left"),
+    LandmarkGroup("jaw line", 0, 17, "from the subject's right ear over the chin to the left ear"),
+    LandmarkGroup("right brow", 17, 5, "from outside in"),
+    LandmarkGroup("left brow", 22, 5, "from inside out"),
+    LandmarkGroup("bridge of the nose", 27, 4, "downward"),
+    LandmarkGroup("base of the nose", 31, 5, "from right to left"),
+    LandmarkGroup("right eye", 36, 6, "from its outer corner over the upper lid"),
+    LandmarkGroup("left eye", 42, 6, "from its inner corner over the upper lid"),
+    LandmarkGroup("outer border of the lips", 48, 12, "from the right corner over the upper lip"),
+    LandmarkGroup("inner border of the lips", 60, 8, "from the right corner over the upper lip"),
+    LandmarkGroup(
+        "two brows", 17, 10, "the right brow from outside in, then the left from inside out"
+    ),
+    LandmarkGroup("two eyes", 36, 12, "first the subject's right eye, then the left"),
 )
 
 
-def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
+def groups_in_disorder(points: Floats64, template: Floats64) -> list[LandmarkGroup]:
     """Return the groups of landmarks in a wrong order; points, template: (68, 3) [mm].
 
     In a closed mouth this test cannot separate the inner lips; `check_lips` does.
@@ -272,7 +274,7 @@ def groups_in_disorder(points: Floats64, template: Floats64) -> list[Group]:
     return [group for group in LANDMARK_GROUPS if _is_disordered(group, points, template)]
 
 
-def _is_disordered(group: Group, points: Floats64, template: Floats64) -> bool:
+def _is_disordered(group: LandmarkGroup, points: Floats64, template: Floats64) -> bool:
     own = slice(group.first, group.first + group.count)
     given, known = (each[own] - each[own].mean(axis=0) for each in (points, template))
     best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]

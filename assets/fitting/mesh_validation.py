@@ -72,7 +72,13 @@ def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> Ski
     file_faces = np.flatnonzero(is_in_piece[faces[:, 0]] & is_triangle)
     skin = number[faces[file_faces]]
     _check_count(skin, FEWEST_TRIANGLES, MOST_FITTED_TRIANGLES)
-    return SkinPiece(vertices[used], skin, number[landmarks], used, file_faces)
+    return SkinPiece(
+        vertices=vertices[used],
+        faces=skin,
+        landmarks=number[landmarks],
+        file_vertices=used,
+        file_faces=file_faces,
+    )
 
 
 def with_seams_joined(

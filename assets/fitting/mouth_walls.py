@@ -93,7 +93,7 @@ def within_skin(
     walls = np.concatenate([part.vertices for part in parts]).astype(np.float64)
     weights: ShareArray = np.concatenate([_mandible_shares(part) for part in parts])
     centre = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
-    skins = [_closed(fitted, mouth)]
+    skins = [_closed_skin(fitted, mouth)]
     for mandible in jaws:
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
         skins.append((moved, fitted.faces))
@@ -119,7 +119,7 @@ def _mandible_shares(part: Part) -> ShareArray:
     return np.full(len(part.vertices), 1.0 if part.bone == "mandible" else 0.0)
 
 
-def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
+def _closed_skin(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integers32]:
     """Close the borders of a skin by fans of triangles, except lids and lips.
 
     The tip of a fan is the centre of its border, for example in the plane of a cut neck. The border

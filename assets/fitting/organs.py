@@ -42,7 +42,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         around = EYE_LANDMARK_RANGES[eye.name]
         source = known.vertices[known.landmarks[around]]
         target = fitted.landmarks[around]
-        scale = _extent(target) / _extent(source)
+        scale = _eye_width(target) / _eye_width(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
@@ -66,7 +66,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     return tuple(eyes)
 
 
-def _extent(points: Floats64) -> float:
+def _eye_width(points: Floats64) -> float:
     """Return the distance between the corners of an eye [mm]; points: its landmarks, (6, 3)."""
     return float(np.linalg.norm(points[3] - points[0]))
 
@@ -157,14 +157,14 @@ def place_parts(
     parts = []
     for part in known.parts:
         if part.bone in balls:
-            placed = _resized(part, *balls[part.bone])
+            placed = _resized_eyeball(part, *balls[part.bone])
         elif part.name.startswith(RIGID_PARTS):
             rise = np.array([0.0, rises[part.bone == "mandible"], 0.0])
-            placed = _moved(part, replace(mouth, shift=mouth.shift + rise))
+            placed = _moved_part(part, replace(mouth, shift=mouth.shift + rise))
         elif part.bone == kept_bone:
             placed = part
         else:
-            placed = _bent(part, warp)
+            placed = _bent_part(part, warp)
         parts.append(placed)
     walls = [number for number, part in enumerate(parts) if part.name.startswith(WALL_NAME)]
     placed_walls = within_skin([parts[number] for number in walls], fitted, mouth, jaws)
@@ -215,7 +215,7 @@ def _rises_of_jaws(known: Head, landmarks: Floats64, mouth: Similarity) -> tuple
     return float(upper - own_upper), float(lower - own_lower)
 
 
-def _moved(part: Part, similarity: Similarity) -> Part:
+def _moved_part(part: Part, similarity: Similarity) -> Part:
     """Move a part without changing its shape."""
     normals = part.normals @ similarity.rotation.T
     return replace(
@@ -225,7 +225,7 @@ def _moved(part: Part, similarity: Similarity) -> Part:
     )
 
 
-def _resized(part: Part, old: Eye, new: Eye) -> Part:
+def _resized_eyeball(part: Part, old: Eye, new: Eye) -> Part:
     """Give an eyeball the size, the position and the iris of another eye."""
     away = part.vertices - old.centre
     reach = np.linalg.norm(away, axis=1)
@@ -240,7 +240,7 @@ def _resized(part: Part, old: Eye, new: Eye) -> Part:
     return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
 
 
-def _bent(part: Part, warp: ThinPlateSpline) -> Part:
+def _bent_part(part: Part, warp: ThinPlateSpline) -> Part:
     """Bend a part by a warp."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
@@ -265,7 +265,7 @@ def with_eyelid_rims(
     for part in parts:
         if part.name == flesh:
             part = _without_corners(part, [eye for eye, loop in loops if not loop])
-            part = _joined(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
+            part = _with_rims(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
             if not len(part.faces):
                 continue
         placed.append(part)
@@ -322,7 +322,7 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)
 
 
-def _joined(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
+def _with_rims(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
     """Add rims to a part; they have its colour, and become darker toward their rear ends."""
     if not rims:
         return part

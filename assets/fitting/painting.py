@@ -29,7 +29,7 @@ from ...geometry.texels import Texels, rates
 from ..data_files import Image, read_arrays, read_image
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
-from ..pictures import LARGEST_SIDE, Texture
+from ..pictures import LARGEST_SIDE, MeshPictures
 from .mesh_validation import SkinPiece
 
 MAP_SIZE = 1024  # [texels] width and height of maps that are drawn again
@@ -167,7 +167,7 @@ def _without_lash_roots(known: Head, picture: Image) -> Image:
 
 
 @dataclass(frozen=True)
-class Layout:
+class TextureLayout:
     """The layout of triangles in a texture.
 
     uv: texture coordinates, (U, 2). face_uv: rows of `uv` at the corners of triangles, (F, 3).
@@ -182,7 +182,7 @@ class Layout:
         return self.uv.astype(np.float64)[self.face_uv]
 
 
-def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
+def texels_within(layout: TextureLayout, size: tuple[int, int]) -> Texels:
     """Find the texels that triangles cover in a texture of (height, width), and a margin of 1.
 
     If triangles cover the texture many times over, raises AssetError.
@@ -204,7 +204,9 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
     return found
 
 
-def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, Layout]) -> Image:
+def drawn_over(
+    picture: Image, layout: TextureLayout, colours: Floats64 | tuple[Image, TextureLayout]
+) -> Image:
     """Draw the triangles of a layout over a texture (H, W, 3), uint8.
 
     colours: colour of each corner, 0 to 255, (F, 3, 3); or a pair of another texture and the layout
@@ -221,7 +223,10 @@ def drawn_over(picture: Image, layout: Layout, colours: Floats64 | tuple[Image, 
 
 
 def maps_in(
-    known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (MAP_SIZE, MAP_SIZE)
+    known: Head,
+    theirs: TextureLayout,
+    own: TextureLayout,
+    size: tuple[int, int] = (MAP_SIZE, MAP_SIZE),
 ) -> tuple[Wrinkles, Image, Image]:
     """Draw the built-in wrinkles, segments and ambient occlusion in the layout of another mesh.
 
@@ -251,7 +256,7 @@ def maps_in(
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
 
 
-def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
+def _rates_at_corners(theirs: TextureLayout, own: TextureLayout) -> Floats64:
     """Return derivatives of the built-in layout by another layout, at rows of its `uv`, (U, 4).
 
     They are means over the surrounding triangles, weighted by area. Derivatives of single triangles
@@ -268,7 +273,9 @@ def _rates_at_corners(theirs: Layout, own: Layout) -> Floats64:
     return means
 
 
-def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Image, Layout] | None:
+def own_picture(
+    texture: MeshPictures, faces: Integers64, turned: bool
+) -> tuple[Image, TextureLayout] | None:
     """Return the texture of some triangles, and their layout; None if they have no texture.
 
     Several textures are put side by side into one. Triangles without a texture get the mean colour.
@@ -297,4 +304,6 @@ def own_picture(texture: Texture, faces: Integers64, turned: bool) -> tuple[Imag
     corners[..., 0] = (corners[..., 0] + np.searchsorted(used, numbers)[:, None]) / len(used)
     uv, number = np.unique(corners.reshape(-1, 2).astype(np.float32), axis=0, return_inverse=True)
     face_uv = number.reshape(-1, 3).astype(np.int32)
-    return pictures[0], Layout(uv, np.ascontiguousarray(face_uv[:, ::-1] if turned else face_uv))
+    return pictures[0], TextureLayout(
+        uv, np.ascontiguousarray(face_uv[:, ::-1] if turned else face_uv)
+    )

@@ -12,7 +12,7 @@ from ..errors import AssetError
 from ..loading import load
 from .head import FittedHead
 from .organs import with_eyelid_rims
-from .painting import Layout, plain_skin, sampled, texels_within
+from .painting import TextureLayout, plain_skin, sampled, texels_within
 from .simplifying import MOST_SIMULATED
 from .warp import nearest_on
 
@@ -45,7 +45,7 @@ def simplified_head(head: FittedHead) -> FittedHead:
         parts=with_eyelid_rims(coarse.parts, coarse.vertices, coarse.faces, coarse.eyes),
         uv=coarse.uv,
         face_uv=coarse.faces,
-        albedo=_drawn_anew(head, picture, Layout(coarse.uv, coarse.faces)),
+        albedo=_drawn_anew(head, picture, TextureLayout(coarse.uv, coarse.faces)),
         wrinkles=replace(known.wrinkles, across=head.wrinkles.across[nearest_vertex]),
         segments=known.segments,
         ambient_occlusion=light,
@@ -54,7 +54,7 @@ def simplified_head(head: FittedHead) -> FittedHead:
     )
 
 
-def _drawn_anew(head: FittedHead, picture: Image, layout: Layout) -> Image:
+def _drawn_anew(head: FittedHead, picture: Image, layout: TextureLayout) -> Image:
     """Draw the texture of a head over another one, in the layout of the head's simplified mesh."""
     assert head.simplified is not None
     coarse = head.simplified
@@ -66,7 +66,7 @@ def _drawn_anew(head: FittedHead, picture: Image, layout: Layout) -> Image:
         head.vertices,
         head.faces,
     )
-    corners = Layout(head.uv, head.face_uv).corners[nearest.triangles]
+    corners = TextureLayout(head.uv, head.face_uv).corners[nearest.triangles]
     places = np.einsum("nc,nck->nk", nearest.weights, corners)
     drawn = picture.copy()
     drawn[texels.rows, texels.columns] = sampled(head.albedo, places)

@@ -67,7 +67,13 @@ def simplified(skin: SkinPiece, landmarks: Floats64) -> SkinPiece:
         )
     nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
     indices = nearest_vertices(landmarks, vertices, faces)
-    return SkinPiece(vertices, faces, indices, skin.file_vertices[nearest], np.arange(0))
+    return SkinPiece(
+        vertices=vertices,
+        faces=faces,
+        landmarks=indices,
+        file_vertices=skin.file_vertices[nearest],
+        file_faces=np.arange(0),
+    )
 
 
 def _with_fewer_triangles(

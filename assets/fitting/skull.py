@@ -145,4 +145,12 @@ def _part(name: str, points: Floats64, faces: Any, colours: Floats64, bone: str)
     # Other parts move with the bone of the same name.
     bone_of_part = {"nose": "cranium", "throat": "cranium", "spine": "neck"}
     bone_shine = 0.28
-    return Part(name, places, normals, faces, inks, bone_of_part.get(bone, bone), bone_shine)
+    return Part(
+        name=name,
+        vertices=places,
+        normals=normals,
+        faces=faces,
+        colours=inks,
+        bone=bone_of_part.get(bone, bone),
+        shine=bone_shine,
+    )

@@ -114,14 +114,14 @@ def recoloured(
         raise ValueError(
             f"angle is {angle}; it must be {DARKEST_TONE:g} (dark) to {LIGHTEST_TONE:g} (light)"
         )
-    tints = _tints() if shrink == 1 else _shrunk_tints(shrink)
+    tints = _tints_of_size() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = changes_of(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey_share = 0.12  # factor on greyness outside the scalp: brows turn grey less, lashes hardly
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     if behind is None and haired_as is not None:
-        behind = _behind(tints, features)
+        behind = _distances_behind_hairline(tints, features)
     hairs = fringe * shrunk_strands(shrink * len(kept), shrink) if fringe else 0.0 * kept
     root_light = 0.5  # fraction of light that reaches the skin between dense hairs
     lips = features.lips * BLOOD + paleness_of_lips(features.pale_lips, density)
@@ -150,7 +150,7 @@ def recoloured(
 
 def _hair_light(angle: float, features: Features) -> Floats64:
     """Return the linear sRGB colour of a person's hair without grey, (3,); angle: ITA [deg]."""
-    hair = changes_of(_tints().melanin_of(angle), 1.0)[2]
+    hair = changes_of(_tints_of_size().melanin_of(angle), 1.0)[2]
     fair_hair = (0.58, 0.44, 0.29)  # sRGB
     return np.asarray(hair + features.fair * (to_linear(np.array(fair_hair)) - hair))
 
@@ -200,7 +200,7 @@ def coloured(
     if irises is not None:
         parts = with_irises(parts, person.eyes, irises, features.iris)
     parts = beside_skin(parts, person.eyes, _beside_light_skin(angle))
-    behind = _behind(_tints(), features)
+    behind = _distances_behind_hairline(_tints_of_size(), features)
     known = load("head").fine_shape
     in_tone = partial(
         recoloured,
@@ -243,7 +243,7 @@ def _own_wrinkles(person: Person, shrink: int) -> Wrinkles:
 
 def _beside_light_skin(angle: float) -> Floats64:
     """Light from skin of a tone, relative to light skin: (3,), at most 1; angle: ITA [deg]."""
-    tints = _tints()
+    tints = _tints_of_size()
     light_skin = 41.0  # ITA from which skin is called light
     lost = np.zeros((2, 3))
     for row, tone in enumerate((min(angle, light_skin), light_skin)):
@@ -310,7 +310,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
     return hair_of(OWN_CUT, scalp, colour, 1.0)
 
 
-def _behind(tints: _Tints, features: Features) -> Floats32:
+def _distances_behind_hairline(tints: _Tints, features: Features) -> Floats32:
     """Compute distances of texels behind a person's hairline [mm], (H, W); baldness halves them."""
     scalp = tints.scalp
     behind = np.float32(SCALP_SCALE) * scalp - np.float32(SCALP_OFFSET)
@@ -325,7 +325,7 @@ def _behind(tints: _Tints, features: Features) -> Floats32:
 
 
 @lru_cache(maxsize=1)
-def _tints() -> _Tints:
+def _tints_of_size() -> _Tints:
     """Read the maps, scaled to the size of the texture."""
     from PIL import Image as Pictures
 
@@ -373,7 +373,7 @@ def _tints() -> _Tints:
 @lru_cache(maxsize=1)
 def _shrunk_tints(shrink: int) -> _Tints:
     """Average the maps over blocks of `shrink` x `shrink` texels."""
-    whole = _tints()
+    whole = _tints_of_size()
     names = [each.name for each in fields(whole)]
     maps: dict[str, Any] = {
         name: shrunk(getattr(whole, name), shrink)

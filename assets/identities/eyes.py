@@ -80,7 +80,7 @@ def with_irises(
     found = {}
     for eye, colours in zip(eyes, painted, strict=True):
         part = _eyeball(parts, eye)
-        found[part.name] = replace(part, colours=_varied(part, eye, colours, iris))
+        found[part.name] = replace(part, colours=_varied_iris(part, eye, colours, iris))
     return tuple(found.get(part.name, part) for part in parts)
 
 
@@ -97,11 +97,11 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
     found = {}
     for part in parts:
         if part.name in exponents:
-            found[part.name] = _times(part.colours, darker ** exponents[part.name])
+            found[part.name] = _times_light(part.colours, darker ** exponents[part.name])
     for eye in eyes:
         part = _eyeball(parts, eye)
         is_white = (_axis_distances(part, eye) > 1.05)[:, None]
-        found[part.name] = _times(part.colours, np.where(is_white, darker**white_factor, 1.0))
+        found[part.name] = _times_light(part.colours, np.where(is_white, darker**white_factor, 1.0))
     return tuple(
         replace(part, colours=found[part.name]) if part.name in found else part for part in parts
     )
@@ -118,7 +118,7 @@ def _axis_distances(part: Part, eye: Eye) -> Floats64:
     return np.where(off[:, 2] > 0.0, radius, np.inf)
 
 
-def _varied(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
+def _varied_iris(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats32:
     """Vary the iris of an eyeball: colours of its vertices, sRGB, (n, 3)."""
     light = to_linear(colours)
     aside = _axis_distances(part, eye)
@@ -153,6 +153,6 @@ def _fibres(part: Part, eye: Eye, aside: Floats64, seed: int) -> Floats64:
     return np.asarray(waves.sum(axis=1) / np.sqrt(0.5 * len(counts)))
 
 
-def _times(colours: Floats32, factor: Floats64) -> Floats32:
+def _times_light(colours: Floats32, factor: Floats64) -> Floats32:
     """Multiply the linear light of colours (sRGB) by a factor."""
     return np.asarray(to_screen(to_linear(colours) * factor), np.float32)

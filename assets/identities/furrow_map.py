@@ -25,7 +25,7 @@ from .furrows import (
     FOREHEAD_REACH,
     GLABELLA_REACH,
     SAMPLE_SPACING,
-    Line,
+    FurrowLine,
     crows_feet,
     forehead_lines,
     frown_lines,
@@ -75,7 +75,7 @@ class _Places(NamedTuple):
 
 def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
     """Draw the lines of a person into wrinkles; shrink: factor on width and height of the map."""
-    places = _places(shrink)
+    places = _line_regions(shrink)
     found = places.plain.copy()
     left, right = places.feet
     for number, (region, draw) in enumerate(
@@ -99,7 +99,7 @@ def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
     return replace(known, map=found)
 
 
-def _bytes_of(region: _Region, drawn: Sequence[Line], per_slope: float) -> Floats32:
+def _bytes_of(region: _Region, drawn: Sequence[FurrowLine], per_slope: float) -> Floats32:
     """Carve lines into a region; returns their slopes and depths [bytes], (h, w, 3).
 
     per_slope: 1 / greatest difference in height between neighbouring texels [1/mm].
@@ -133,12 +133,12 @@ def shared_map(shrink: int) -> Image:
 
 
 @lru_cache(maxsize=2)
-def _places(shrink: int) -> _Places:
+def _line_regions(shrink: int) -> _Places:
     """Find the regions of lines; all lengths are chosen by eye, except the brows' position."""
     head = load("head")
     plain = shared_map(shrink).copy()
     size = len(plain)
-    rows, columns, place = _face(size)
+    rows, columns, place = _face_texels(size)
     near = plain[rows, columns].astype(np.float32)
     x, y, z = np.moveaxis(place, 2, 0)
     beside = np.abs(x)
@@ -191,7 +191,7 @@ def _places(shrink: int) -> _Places:
     )
 
 
-def _face(size: int) -> tuple[slice, slice, Floats64]:
+def _face_texels(size: int) -> tuple[slice, slice, Floats64]:
     """Find the rows and columns of the map that hold the face, and points [mm], (h, w, 3)."""
     head = load("head")
     x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)

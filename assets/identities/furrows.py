@@ -27,7 +27,7 @@ FAN_ANGLES = {  # smallest and greatest angle of crow's feet above the horizonta
 }
 
 
-class Line(NamedTuple):
+class FurrowLine(NamedTuple):
     """An expression line, sampled along its region.
 
     course: coordinate across the region at each sample, [mm] or [rad], (s,).
@@ -44,9 +44,9 @@ class Line(NamedTuple):
     swelling: float
 
 
-def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
+def forehead_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random lines of the forehead; some are broken into two halves of unequal height."""
-    x = _samples(FOREHEAD_REACH)
+    x = _sample_coordinates(FOREHEAD_REACH)
     lowest, highest = 36.5, 70.0  # [mm] above the root of the nose, along the skin
     spacing = (highest - lowest) / lines.forehead
     spread = min(spacing, 11.0)
@@ -59,7 +59,7 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         place = middle + (number + 0.5 - 0.5 * lines.forehead) * spread
         place += 0.17 * spread * random.uniform(-1.0, 1.0)
         own = place + course + 0.45 * _random_curve(26.0, x, random)
-        shown = _shown(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
+        shown = _line_strength(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
         whole = smooth_step(
             0.0,
             1.0,
@@ -80,16 +80,16 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         else:
             parts = [(own, depth)]
         width = 2.3 * random.uniform(0.85, 1.15)
-        found += [Line(*part, width, 0.45 * min(spread, 9.0) + 0.4, 1.9) for part in parts]
+        found += [FurrowLine(*part, width, 0.45 * min(spread, 9.0) + 0.4, 1.9) for part in parts]
     for _ in range(lines.fine * lines.forehead):
         own = random.uniform(lowest, highest) + course + 0.8 * _random_curve(20.0, x, random)
         centre, half = random.uniform(-35.0, 35.0), random.uniform(7.0, 18.0)
         depth = 0.1 * lines.forehead_depth * smooth_step(half, 0.3 * half, np.abs(x - centre))
-        found.append(Line(own, depth, 1.2, 1.8, 0.2))
+        found.append(FurrowLine(course=own, depth=depth, width=1.2, roll=1.8, swelling=0.2))
     return found
 
 
-def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
+def _line_strength(spread: Spread, beside: Floats64, random: np.random.Generator) -> Floats64:
     """Return a line's strength, 0 to 1, (s,); beside: distances from the midline [mm], (s,)."""
     reach = random.uniform(0.8, 1.25)
     match spread:
@@ -101,9 +101,9 @@ def _shown(spread: Spread, beside: Floats64, random: np.random.Generator) -> Flo
             return random.uniform(0.0, 0.3) + 0.7 * smooth_step(6.0 * reach, 28.0 * reach, beside)
 
 
-def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
+def frown_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random upright lines between the brows, which diverge upward."""
-    y = _samples(GLABELLA_REACH)
+    y = _sample_coordinates(GLABELLA_REACH)
     places = {1: (0.0,), 2: (-5.6, 5.6), 3: (-7.2, 0.4, 6.8)}[lines.frown]
     deepest = random.integers(len(places))
     deepest_of_all = 0.55 * lines.frown_depth * (0.75 if lines.frown > 2 else 1.0)  # [mm]
@@ -117,13 +117,13 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[Line]:
         ends = smooth_step(low, low + 9.0, y) * smooth_step(high, high - 16.0, y)
         factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
         depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _random_curve(14.0, y, random))
-        found.append(Line(own, depth, 1.7, 4.4, 0.8))
+        found.append(FurrowLine(course=own, depth=depth, width=1.7, roll=4.4, swelling=0.8))
     return found
 
 
-def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
+def crows_feet(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random crow's feet of one side; some of them fork."""
-    radius = _samples(FEET_REACH)
+    radius = _sample_coordinates(FEET_REACH)
     low, high = FAN_ANGLES[lines.fan]
     wide = (high - low) / lines.feet
     begin = 13.0  # [mm] behind the corner of the lids
@@ -139,12 +139,14 @@ def crows_feet(lines: Lines, random: np.random.Generator) -> list[Line]:
         depth = 0.36 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
         depth *= 1.0 + 0.15 * _random_curve(9.0, radius, random)
         roll = float(np.clip(10.0 * wide, 1.4, 2.4))
-        found.append(Line(own, depth, 1.05, roll, 1.2))
+        found.append(FurrowLine(course=own, depth=depth, width=1.05, roll=roll, swelling=1.2))
         if random.random() < 0.3:
             fork = start + random.uniform(4.0, 8.0)
             away = random.choice([-1.0, 1.0]) * 0.018 * np.maximum(radius - fork, 0.0)
             branch = 0.6 * depth * smooth_step(fork - 1.0, fork + 3.0, radius)
-            found.append(Line(own + away, branch, 0.9, 1.4, 0.8))
+            found.append(
+                FurrowLine(course=own + away, depth=branch, width=0.9, roll=1.4, swelling=0.8)
+            )
     return found
 
 
@@ -156,6 +158,6 @@ def _random_curve(length: float, samples: Floats64, random: np.random.Generator)
     return np.asarray(np.cos(2.0 * np.pi * samples[:, None] / waves + begins) @ amplitudes * 1.41)
 
 
-def _samples(reach: tuple[float, float]) -> Floats64:
+def _sample_coordinates(reach: tuple[float, float]) -> Floats64:
     """Return coordinates of the samples along lines [mm], (s,)."""
     return np.arange(reach[0], reach[1], SAMPLE_SPACING)

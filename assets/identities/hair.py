@@ -170,14 +170,14 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     painted_depth = 1.0  # [mm] behind the hairline, up to which hairs are only painted
-    faces, rows, angle = _parted(faces[(behind[faces] > painted_depth).any(axis=1)], angle)
+    faces, rows, angle = _split_at_seam(faces[(behind[faces] > painted_depth).any(axis=1)], angle)
     points, normals, behind, covers = (each[rows] for each in (points, normals, behind, covers))
     out = unit_vectors(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
     comb = unit_vectors(np.cross(np.cross(whorl, out), normals))
     if whorl[2] < 0.0:  # a whorl at the crown
-        turned, comb = _swirled(whorl, out, away, comb)
+        turned, comb = _turned_around_whorl(whorl, out, away, comb)
         angle = angle - turned
     long = length * _lengths(cut, points, normals, behind)
     # Distances behind the hairline [mm]: up to the first hair lies flat, from the second it stands
@@ -193,7 +193,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
-    uneven = _uneven(radius * angle)
+    uneven = _hem_offsets(radius * angle)
     hem_depth = 20.0  # [mm] over which hair becomes dense
     bare_depth = 5.0  # [mm] behind the hairline, where hair that is tied back begins
     first_depth = bare_depth if cut.knot else painted_depth
@@ -208,7 +208,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
         vertices=(points + MEAN_PLACE * way).astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
-        colours=(_tones(points, radius * away) * colour).astype(np.float32),
+        colours=(_tone_factors(points, radius * away) * colour).astype(np.float32),
         bone="cranium",
         shine=SLEEK_GLOSS if cut.knot else short_shine,
         striation=striation.astype(np.float32),
@@ -241,7 +241,7 @@ def _over_skin(
     return np.asarray(way + rise[:, None] * normals)
 
 
-def _tones(points: Points, away: Floats64) -> Floats64:
+def _tone_factors(points: Points, away: Floats64) -> Floats64:
     """Return factors on the colour of strands, (n, 1); away: distance from the whorl [mm], (n,)."""
     difference = 0.07  # between the tones of locks and the mean tone
     root_radius = 7.0  # [mm] around a whorl, within which dark roots show
@@ -249,7 +249,7 @@ def _tones(points: Points, away: Floats64) -> Floats64:
     return np.asarray(at_roots * (1.0 + difference * waves(points, 0.33, 1.0)))
 
 
-def _uneven(across: Floats64) -> Floats64:
+def _hem_offsets(across: Floats64) -> Floats64:
     """Return how far uneven hems lie in front of their mean [mm]; across: strands [mm], (n,)."""
     fine = 1.0 * np.sin(0.22 * across) + 0.8 * np.sin(0.57 * across + 1.0)
     return np.asarray(fine + 1.5 * np.sin(0.085 * across + 2.0))
@@ -268,7 +268,7 @@ def _first_side(cut: Cut, whorl: Floats64) -> Floats64:
     return np.asarray(unit_vectors(beside[None])[0])
 
 
-def _swirled(
+def _turned_around_whorl(
     whorl: Floats64, out: Points, away: Floats64, comb: Points
 ) -> tuple[Floats64, Floats64]:
     """Turn strands around a whorl; returns angles [rad], (n,), and turned directions, (n, 3).
@@ -293,7 +293,7 @@ def _lengths(cut: Cut, points: Points, normals: Points, behind: Floats64) -> Flo
     return np.asarray(long)
 
 
-def _parted(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
+def _split_at_seam(faces: Integers32, angle: Floats64) -> tuple[Integers32, Integers64, Floats64]:
     """Double the vertices of faces across which the angle jumps from pi to -pi.
 
     Without this cut, strands would run across the whole head. faces: (F, 3). angle: angle of each

@@ -21,7 +21,7 @@ from .relief import Relief, relief_of
 
 def larynx_of(person: Person, size: int) -> Relief:
     """Shape a person's larynx in a map of (size, size) texels."""
-    texels = _neck(size)
+    texels = _neck_texels(size)
     x, y, _ = texels.interpolate(person.vertices[person.faces]).T
     throat = person.vertices[person.anatomy["cervicale"], 1]
     below = 15.0  # [mm] down from the angle between chin and neck
@@ -34,7 +34,7 @@ def larynx_of(person: Person, size: int) -> Relief:
 
 
 @lru_cache(maxsize=2)
-def _neck(size: int) -> Texels:
+def _neck_texels(size: int) -> Texels:
     """Find the texels of the front of the neck in a map of (size, size) texels."""
     head = load("head")
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)

@@ -45,19 +45,19 @@ def with_folds(wrinkles: Wrinkles, person: Person) -> Wrinkles:
         steep = 127.0 * size / wrinkles.steepest
         add_to(near, more * np.array([steep, steep, 255.0 * darkest], np.float32))
     found.flags.writeable = False
-    resting = np.maximum(wrinkles.resting, _yielding()[1])
-    folded = replace(wrinkles, map=found, resting=resting, folds=_yielding()[1])
+    resting = np.maximum(wrinkles.resting, _wrinkles_of_upper_lids()[1])
+    folded = replace(wrinkles, map=found, resting=resting, folds=_wrinkles_of_upper_lids()[1])
     return with_lids(folded)
 
 
 def with_lids(wrinkles: Wrinkles) -> Wrinkles:
     """Add the upper lids to the skin on which stretch smooths wrinkles."""
-    across, lids = _yielding()
+    across, lids = _wrinkles_of_upper_lids()
     return replace(wrinkles, across=across, lids=lids)
 
 
 @lru_cache(maxsize=1)
-def _yielding() -> tuple[Floats32, Floats32]:
+def _wrinkles_of_upper_lids() -> tuple[Floats32, Floats32]:
     """Return `across` of the wrinkles with upper lids, and which vertices have folds, (V,).
 
     Folds run along the lid, so their skin yields perpendicular to the lid's edge.
@@ -66,7 +66,7 @@ def _yielding() -> tuple[Floats32, Floats32]:
     across = head.wrinkles.across.copy()
     has_fold = np.zeros(len(across), np.float32)
     for side in EYE_SIDES:
-        edge = _edge(head.vertices, side)
+        edge = _lid_edge(head.vertices, side)
         along = _nearest(head.vertices, edge)
         offset = head.vertices - _edge_weights(along) @ edge
         away = np.linalg.norm(offset, axis=1)
@@ -93,7 +93,7 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     texels = near.texels
     along = near.along
     places = texels.interpolate(person.vertices[person.faces])
-    offset = places - near.edge_weights @ _edge(person.vertices, side)
+    offset = places - near.edge_weights @ _lid_edge(person.vertices, side)
     away = np.sqrt((offset**2).sum(axis=1))
     upward = offset[:, 1] / np.maximum(away, 0.1)
     is_lid = smooth_step(0.15, 0.6, upward) * smooth_step(0.03, 0.15, along)
@@ -128,7 +128,7 @@ class _EyeTexels(NamedTuple):
     edge_weights: Floats64
 
 
-def _edge(vertices: Floats64, side: str) -> Floats64:
+def _lid_edge(vertices: Floats64, side: str) -> Floats64:
     """Return an upper lid's edge from the inner corner [mm], (EDGE_VERTEX_COUNT, 3)."""
     return vertices[load("head").rings[f"eye_2_{side}"][:EDGE_VERTEX_COUNT]]
 
@@ -172,7 +172,7 @@ def _nearest(places: Floats64, points: Floats64) -> Floats64:
 def _texels_around(side: str, size: int) -> _EyeTexels:
     head = load("head")
     reach = 11.0  # [mm] around the edge of the lid, beyond all folds
-    points = _edge(head.vertices, side)
+    points = _lid_edge(head.vertices, side)
     curve = scipy.spatial.cKDTree(_edge_weights(np.linspace(0.0, 1.0, CURVE_SAMPLE_COUNT)) @ points)
     is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
     corners = head.uv[head.face_uv].astype(np.float64)

@@ -95,8 +95,8 @@ WOUND_HAIR = replace(FALLING_HAIR, count=350, longest=22.0, radius=30.0)
 def locks_on(hair: Part, growth: Growth) -> Part:
     """Make the locks on layers of hair; they are wide in dense hair, and single hairs at hems."""
     assert hair.striation is not None
-    chances = _chances(growth.count)
-    faces, barycentric = _places(hair, growth.fringe, chances[:, :3])
+    chances = _random_shares(growth.count)
+    faces, barycentric = _growth_places(hair, growth.fringe, chances[:, :3])
     corners = hair.faces[faces]
     columns = np.hstack([hair.vertices, hair.normals, hair.striation[:, 1:6], hair.colours])
     at = sum(barycentric[:, k, None] * columns[corners[:, k]] for k in range(3))
@@ -113,7 +113,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     risen = alone[:, 1:2] * (1.0 - growth.lying * (1.0 - 6.0 * alone[:, 1:2] ** 4))
     rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 0.6, 2.0) + risen)
     # Around a whorl, where layers stand up, locks lie in all directions.
-    upright = _upright(_dot(ahead, normal), away)
+    upright = _rise_around_whorl(_dot(ahead, normal), away)
     stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
     ahead = unit_vectors(ahead + lean * across + rise * normal + stray)
     reach = (growth.tip - growth.root) * (1.0 + 0.8 * alone[:, 2:3])
@@ -151,7 +151,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     )
 
 
-def _upright(rise: Floats64, away: Floats64) -> Floats64:
+def _rise_around_whorl(rise: Floats64, away: Floats64) -> Floats64:
     """Return how far layers stand up around a whorl, 0 to 0.4.
 
     Layers also stand up in the hollow of the nape, where upright locks would look like thorns.
@@ -166,14 +166,14 @@ def _dot(first: Floats64, second: Floats64) -> Floats64:
 
 
 @lru_cache(maxsize=4)
-def _chances(count: int) -> Floats32:
+def _random_shares(count: int) -> Floats32:
     """Draw random numbers of locks, 0 to 1, (count, 11); those in the first column rise."""
     found = np.random.default_rng(0).random((count, 11), np.float32)
     found[:, 0] = (np.arange(count) + found[:, 0]) / count
     return found
 
 
-def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, Floats32]:
+def _growth_places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, Floats32]:
     """Choose the faces of hair on which n locks grow, (n,), and barycentric weights, (n, 3)."""
     assert hair.striation is not None
     a, b, c = np.moveaxis(hair.vertices[hair.faces], 1, 0)
@@ -182,7 +182,7 @@ def _places(hair: Part, fringe: float, chances: Floats32) -> tuple[Integers64, F
     way = hair.striation[:, 2:5]
     lengths = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
     rise = (way * hair.normals).sum(axis=1) / lengths
-    upright = _upright(rise, hair.striation[:, 1].astype(np.float64))[hair.faces[:, 0]]
+    upright = _rise_around_whorl(rise, hair.striation[:, 1].astype(np.float64))[hair.faces[:, 0]]
     # Locks are denser at the hem, and sparse in front of it. They are densest at a whorl, where
     # layers show no strands.
     weights = area * np.clip(0.2 + 5.0 * dense, 0.0, 1.0) * (1.0 + fringe * (dense < 0.7))

@@ -59,7 +59,7 @@ def falling_hair(
     drop = np.linspace(0.0, 1.0, sample_count)[1:]
     roots = unit_vectors(front + (share**0.8)[:, None] * (crown - front))
     level_of_widest = np.array([0.0, -0.1, 0.0])  # strands leave the head a little below its centre
-    directions = _turned(roots, unit_vectors(level + level_of_widest), over)
+    directions = _between_ways(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
     uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
     # Beside the face the outer surface of the hair curves inward to its inner surface.
@@ -73,12 +73,12 @@ def falling_hair(
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
-    places = middle + (_reach(directions, solid) + clearance + thick)[..., None] * directions
+    places = middle + (_skin_reach(directions, solid) + clearance + thick)[..., None] * directions
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
     lobe_depth = 42.0  # [mm] below the tragus; strands that curve in above it would meet the lobe
-    curved, thinned = _tips(height, ears_end=ear[1] - lobe_depth, ends=ends)
+    curved, thinned = _curved_tips(height, ears_end=ear[1] - lobe_depth, ends=ends)
     fall = middle + (wide * curved - thinned * thick[:, -1:])[..., None] * level[:, None]
     fall[..., 1] = height
     thick = np.hstack([thick, thick[:, -1:] * (1.0 - thinned)])
@@ -86,13 +86,13 @@ def falling_hair(
     bending_steps = 1.3  # standard deviation of the smoothing along strands, in samples
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
     bent[:, 0] = sharp[:, 0]  # roots stay
-    along = _along(bent)
+    along = _arc_lengths(bent)
     off = 88.0 * (angle - HAIR_EDGE_ANGLE)[:, None]
     # Hair becomes dense within 2 mm of the parting and 4 mm of the face. Over longer distances, the
     # strands in front would look like bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
-    hair = _layers(HAIR_NAME, bent, across[:, None], thick, dense, colour, _slide(along))
+    hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, colour, _slide_of(along))
     return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
 
 
@@ -111,8 +111,8 @@ def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
     return inside, hair, locks_on(inner, INNER_TIPS), locks_on(outer, TIP_GROWTH)
 
 
-def _slide(along: Floats64) -> Floats64:
-    """Return `slide` of `_layers`, (n, m), for lengths along strands from the roots [mm], (n, m).
+def _slide_of(along: Floats64) -> Floats64:
+    """Return `slide` of `_layered_part`, (n, m); along: lengths from the roots [mm], (n, m).
 
     Hair rises at its parting, and shines where it lies flat. If it lay flat at the parting, the two
     halves would meet there in a hard edge, one side bright and the other dark.
@@ -121,7 +121,7 @@ def _slide(along: Floats64) -> Floats64:
     return np.asarray(LAYER_SLIDE * smooth_step(0.0, rising_length, along))
 
 
-def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
+def _curved_tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
     """Curve strands inward below the ears, and thin them toward their tips.
 
     height: height of each point [mm], (n, m). ears_end: height below which strands curve [mm].
@@ -134,7 +134,7 @@ def _tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats6
     return 1.0 - tip_curving * low**1.6, tip_thinning * low**2
 
 
-def _reach(directions: Floats64, solid: Floats64) -> Floats64:
+def _skin_reach(directions: Floats64, solid: Floats64) -> Floats64:
     """Return distances of the skin from the head's centre [mm], (n, m), as a soft maximum.
 
     directions: unit directions, (n, m, 3). solid: points of the skin relative to the centre [mm],
@@ -152,7 +152,7 @@ def _reach(directions: Floats64, solid: Floats64) -> Floats64:
     return np.asarray(mean ** (1.0 / power))
 
 
-def _turned(start: Floats64, end: Floats64, fractions: Floats64) -> Floats64:
+def _between_ways(start: Floats64, end: Floats64, fractions: Floats64) -> Floats64:
     """Interpolate between unit vectors along great circles (slerp).
 
     start, end: pairs of unit vectors, (n, 3), neither equal nor opposite. fractions: fractions of
@@ -182,7 +182,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         free_distance = 75.0  # [mm] from the beginning of a tail to its full width
         tie_distance = 28.0  # [mm] from the beginning of a tail to its tie
         free = smooth_step(tie_distance, free_distance, far)
-        directions = _falling(far, out, cut.aside, root_depth, free_distance)
+        directions = _falling_ways(far, out, cut.aside, root_depth, free_distance)
         line = root - root_depth * out + np.cumsum(directions * far[1], axis=0)
         tied_width = 0.45  # thickness at the tie, as a fraction of the full thickness
         thick = tied_width + (1.0 - tied_width) * free
@@ -220,13 +220,16 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
     light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
     across = count * wide * place[..., 0] / (2.0 * np.pi)
-    tied = _layers(HAIR_NAME + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], light * colour)
+    shaded = light * colour
+    tied = _layered_part(HAIR_NAME + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], shaded)
     on_scalp = short.hair_of(cut, scalp, colour, length)
     locks = locks_on(tied, FALLING_HAIR if cut.tail else WOUND_HAIR)
     return (*on_scalp, from_within(tied, tied.faces), tied, locks)
 
 
-def _falling(far: Floats64, out: Floats64, aside: float, first: float, last: float) -> Floats64:
+def _falling_ways(
+    far: Floats64, out: Floats64, aside: float, first: float, last: float
+) -> Floats64:
     """Return directions along a tail, (n, 3), which bend from outward to downward.
 
     far: distances along the tail [mm], (n, 1). out: outward unit vector, (3,). aside: see `Cut`.
@@ -238,7 +241,7 @@ def _falling(far: Floats64, out: Floats64, aside: float, first: float, last: flo
     return unit_vectors((1.0 - bent) * out + bent * (DOWN_AXIS - sideways * RIGHT_AXIS))
 
 
-def _layers(
+def _layered_part(
     name: str,
     places: Floats64,
     across: Floats64,
@@ -270,7 +273,7 @@ def _layers(
     normals = unit_vectors(normals.reshape(-1, 3) + outward_share * out)
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # fraction of the thickness between the first and the last layer
-    along = short.LENGTHWISE_FACTOR * _along(places)
+    along = short.LENGTHWISE_FACTOR * _arc_lengths(places)
     columns = across, along, layer_share * thick, np.minimum(dense, FULL_DENSITY), slide
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)
     across, along, thick, dense, slide = np.split(rows.reshape(-1, 5), 5, axis=1)
@@ -287,7 +290,7 @@ def _layers(
     )
 
 
-def _along(places: Floats64) -> Floats64:
+def _arc_lengths(places: Floats64) -> Floats64:
     """Return arc lengths of points of strands from the roots [mm], (n, m, 3) -> (n, m)."""
     steps = np.linalg.norm(np.diff(places, axis=1, prepend=places[:, :1]), axis=2)
     return np.asarray(steps.cumsum(axis=1))

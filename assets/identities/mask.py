@@ -33,7 +33,7 @@ def mask(person: Person, colour: Colour) -> Part:
     """Make a mask that fits a person; colour: sRGB."""
     axis = person.vertices[person.anatomy["tragion_left"]] * [0.0, 0.0, 1.0]
     axis[2] += 30.0
-    turn, height = _places(person)
+    turn, height = _sheet_places(person)
     outward = np.stack([np.sin(turn), np.zeros(MASK_SHAPE), np.cos(turn)], axis=-1)
     level = np.stack([np.zeros(MASK_SHAPE), height, np.zeros(MASK_SHAPE)], axis=-1)
     reach = _membrane(_skin_below(person, axis, turn, height))
@@ -47,7 +47,7 @@ def mask(person: Person, colour: Colour) -> Part:
     shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(MASK_SHAPE)])
     shares = _mandible_weights(person, outer)
     cover = _Piece(sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
-    return _joined([cover, *_loops(person, outer, shares, colour)])
+    return _joined_pieces([cover, *_ear_loops(person, outer, shares, colour)])
 
 
 class _Piece(NamedTuple):
@@ -58,7 +58,7 @@ class _Piece(NamedTuple):
     shares: Floats64  # weights of the mandible's motion, 0 to 1, (n,)
 
 
-def _joined(pieces: list[_Piece]) -> Part:
+def _joined_pieces(pieces: list[_Piece]) -> Part:
     """Join pieces to one part."""
     surface = joined([each.surface for each in pieces])
     return Part(
@@ -73,7 +73,7 @@ def _joined(pieces: list[_Piece]) -> Part:
     )
 
 
-def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) -> list[_Piece]:
+def _ear_loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) -> list[_Piece]:
     """Make the four elastics from the corners of the sheet (r, c, 3) to behind the ears.
 
     shares: weights of the mandible's motion at the sheet's vertices, (r, c).
@@ -92,7 +92,7 @@ def _loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour) ->
     return loops
 
 
-def _places(person: Person) -> tuple[Floats64, Floats64]:
+def _sheet_places(person: Person) -> tuple[Floats64, Floats64]:
     """Return angles [rad] and heights [mm] of the sheet's vertices around an axis, both MASK_SHAPE.
 
     The axis of the cylinder is vertical; angle 0 points forward.
@@ -114,7 +114,7 @@ def _places(person: Person) -> tuple[Floats64, Floats64]:
 def _skin_below(person: Person, axis: Floats64, turn: Floats64, height: Floats64) -> Floats64:
     """Measure how far the skin under each vertex of the sheet lies from the axis [mm], MASK_SHAPE.
 
-    axis: a point of the axis. turn, height: as `_places` returns them.
+    axis: a point of the axis. turn, height: as `_sheet_places` returns them.
     """
     skin = person.vertices
     corners = skin[person.faces]

@@ -115,7 +115,7 @@ def _make_head(identity: Identity) -> Person:
     """Make the head of an identity; if its skin turns over or intersects, raises AssetError."""
     known = load("head")
     vertices, eyes, chin = _form_of(known, identity)
-    named = _named(known)
+    named = _named_vertices(known)
     spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
     larger = float(np.sqrt(spread / usual))
     give = 0.2  # smoothing of the warp that organs follow
@@ -142,7 +142,7 @@ def _make_head(identity: Identity) -> Person:
         face_uv=known.face_uv,
         albedo=known.albedo,
         segments=known.segments,
-        wrinkles=replace(known.wrinkles, resting=_resting(known, identity)),
+        wrinkles=replace(known.wrinkles, resting=_resting_furrows(known, identity)),
         rig=known.rig,
         layers=smiling(known.layers, identity.smile),
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
@@ -209,7 +209,7 @@ def _resting_face(
     return x
 
 
-def _resting(known: Head, identity: Identity) -> Floats32:
+def _resting_furrows(known: Head, identity: Identity) -> Floats32:
     """Return the strength of furrows at rest, 0 to 1, (V,); between the brows it is low."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
     off = known.vertices - known.vertices[known.anatomy["glabella"]]
@@ -237,7 +237,7 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
     return np.asarray(np.clip(1.0 + 0.55 * waves, 0.15, 1.9))
 
 
-def _named(known: Head) -> Integers32:
+def _named_vertices(known: Head) -> Integers32:
     """Return the vertices that organs follow: landmarks, anatomy, rings of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))

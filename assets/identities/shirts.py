@@ -73,12 +73,12 @@ def _unshaded_colour(shirt: Part, colour: Floats64) -> Floats64:
     return np.asarray(np.median(shirt.colours, axis=0) / np.array(SHIRT_COLOURS["blue"]) * colour)
 
 
-def _banded(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+def _shirt_with_band(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make the built-in shirt in another colour."""
     return [_in_colour(shirt, colour)]
 
 
-def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+def _shirt_with_roll(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make a shirt with a high collar that is folded over."""
     columns = np.linspace(0.0, SHIRT_COLUMNS, 3 * SHIRT_COLUMNS, endpoint=False)
     surface = _Surface(shirt)
@@ -103,7 +103,7 @@ def _rolled(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
         rows.append(there + (outside + wave * (outside > 3.0)) * out)
     shades = np.array([0.3, 0.4, 0.6, 0.9, 1.0, 1.0, 0.99, 0.98, 0.97, 0.93, 0.75, 0.45])
     ribs = shades[:, None] * _ribs(len(columns))
-    roll = _rowed(np.stack(rows), ribs, _unshaded_colour(shirt, colour), closed=True)
+    roll = _piece_of_rows(np.stack(rows), ribs, _unshaded_colour(shirt, colour), closed=True)
     return [_in_colour(shirt, colour), roll]
 
 
@@ -112,7 +112,7 @@ def _ribs(count: int) -> Floats64:
     return np.where(np.arange(count) % 2, 0.9, 1.03)
 
 
-def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+def _shirt_with_wings(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make a shirt with a turned-down collar and a buttoned front."""
     surface = _Surface(shirt)
     down = np.linspace(0.0, 1.0, 13)[:, None]
@@ -136,11 +136,11 @@ def _winged(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     shades = 1.03 - 0.12 * (np.abs(seam - 0.1) < 0.03)
     plain = _unshaded_colour(shirt, colour)
     leaf = _Cloth(sheet(outer, inner), np.tile(shades.ravel(), 2)[:, None] * plain)
-    tucked = _rowed(rows, np.array([[0.35], [0.6], [0.95]]), plain)
-    return [_in_colour(shirt, colour), tucked, leaf, *_buttoned(surface, plain)]
+    tucked = _piece_of_rows(rows, np.array([[0.35], [0.6], [0.95]]), plain)
+    return [_in_colour(shirt, colour), tucked, leaf, *_button_strip(surface, plain)]
 
 
-def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
+def _button_strip(surface: _Surface, colour: Floats64) -> list[_Cloth]:
     """Make the strip down the front, and three buttons on it."""
     across = np.array([-15.0, -14.0, -11.0, 0.0, 11.0, 14.0, 15.0])  # [mm]
     away = np.array([-1.0, 1.2, 1.5, 1.5, 1.5, 1.2, -1.0])
@@ -148,7 +148,7 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
     columns = surface.columns_at(np.broadcast_to(across, (len(depths), len(across))), depths)
     strip = surface.down(columns, depths) + away[:, None] * surface.outward(columns, depths)
     shades = np.array([0.6, 0.8, 1.0, 1.0, 1.0, 0.8, 0.6])
-    pieces = [_rowed(strip, shades, colour)]
+    pieces = [_piece_of_rows(strip, shades, colour)]
     light = 0.35 * colour + 0.6
     turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     for depth in (8.0, 76.0, 152.0):
@@ -162,11 +162,11 @@ def _buttoned(surface: _Surface, colour: Floats64) -> list[_Cloth]:
         # Triangles run counter-clockwise, seen from outside.
         rims = np.stack(rows)[::-1, :]
         shades = np.array([0.9, 0.9, 1.05, 0.95, 0.8])
-        pieces.append(_rowed(rims, shades[:, None], light, closed=True))
+        pieces.append(_piece_of_rows(rims, shades[:, None], light, closed=True))
     return pieces
 
 
-def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
+def _shirt_with_v_neck(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     """Make a jersey with a V neck over a shirt of another colour."""
     surface = _Surface(shirt)
     # The left half of the V, from its lowest point to the side of the neck.
@@ -193,12 +193,19 @@ def _pointed(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cloth]:
     below = np.array(SHIRT_COLOURS["blue" if is_light else "white"])
     knitted = shades[:, None] * np.ones(len(columns))
     knitted[1:6] *= _ribs(len(columns))
-    jersey = _rowed(points, knitted, _unshaded_colour(shirt, colour), closed=True)
+    jersey = _piece_of_rows(points, knitted, _unshaded_colour(shirt, colour), closed=True)
     return [_in_colour(shirt, below), jersey]
 
 
 COLLAR_BUILDERS: Mapping[str, Callable[[Part, Floats64, Floats64], list[_Cloth]]] = (
-    MappingProxyType({"band": _banded, "roll": _rolled, "wings": _winged, "v": _pointed})
+    MappingProxyType(
+        {
+            "band": _shirt_with_band,
+            "roll": _shirt_with_roll,
+            "wings": _shirt_with_wings,
+            "v": _shirt_with_v_neck,
+        }
+    )
 )
 
 
@@ -285,7 +292,9 @@ def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:
     return Tube(places, vertex_normals(places, faces), faces)
 
 
-def _rowed(points: Floats64, shades: Floats64, colour: Floats64, *, closed: bool = False) -> _Cloth:
+def _piece_of_rows(
+    points: Floats64, shades: Floats64, colour: Floats64, *, closed: bool = False
+) -> _Cloth:
     """Make a piece of rows of points, (r, n, 3); shades: factors on colour, broadcast to (r, n)."""
     shaded = np.broadcast_to(shades, points.shape[:2]).reshape(-1, 1) * colour
     return _Cloth(_surface_of(points, closed=closed), shaded)

@@ -36,7 +36,7 @@ from ...geometry.arrays import Floats64
 from ...geometry.directions import unit_vectors
 from ..data_files import read_arrays
 from ..loading import load
-from ..norms import NORMS, Sample, measures_of
+from ..norms import NORMS, NormSample, measures_of
 from .lines import Lines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
@@ -114,7 +114,7 @@ class Identity:
         return replace(self, weights=weights, unevenness=unevenness, brows=factor * self.brows)
 
 
-def norms_of(sex: Sex) -> dict[str, Sample]:
+def norms_of(sex: Sex) -> dict[str, NormSample]:
     """Return the norms of a sex: code of a measure -> mean and deviation."""
     return {code: norm.women if sex is Sex.WOMAN else norm.men for code, norm in NORMS.items()}
 
@@ -225,7 +225,7 @@ def person_space() -> PersonSpace:
     directions = unit_vectors(directions)
     corner = modes[:, head.anatomy["exocanthion_left"]] * [0.0, 1.0, 1.0]
     pushed = np.einsum("kni,ni->nk", modes[:, numbers] - corner[:, None], directions)
-    return PersonSpace(mean, modes, slopes, pushed, head.anatomy)
+    return PersonSpace(mean=mean, modes=modes, slopes=slopes, pushed=pushed, anatomy=head.anatomy)
 
 
 def sample_identity(
@@ -269,12 +269,12 @@ def sample_identity(
     lines = drawn_lines(not is_woman, age, random)
     leanness = np.clip(random.normal(), -2.0, 2.0)
     return Identity(
-        sex,
-        age,
-        hair,
-        cut,
-        tuple(weights.tolist()),
-        tuple(uneven.tolist()),
+        sex=sex,
+        age=age,
+        hair=hair,
+        cut=cut,
+        weights=tuple(weights.tolist()),
+        unevenness=tuple(uneven.tolist()),
         covered=float(np.clip(coverage, 0.5, 3.0)),
         corners=float(0.7 + 0.3 * is_woman + 0.65 * corners - 0.08 * late),
         brows=float(1.0 * is_woman + 1.2 * brows - 0.2 * late),

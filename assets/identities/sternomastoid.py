@@ -38,14 +38,14 @@ def sternomastoids_of(person: Person, size: int) -> tuple[Relief, ...]:
     tendon = max(height, 0.0)  # the built-in head shows no tendon, so it cannot sink
     muscles = []
     for side in (1.0, -1.0):
-        belly, front = _raised(size, side)
+        belly, front = _belly_and_tendon(size, side)
         heights = height * belly.heights + tendon * front.heights
         muscles.append(belly._replace(heights=heights))
     return tuple(muscles)
 
 
 @lru_cache(maxsize=4)
-def _raised(size: int, side: float) -> tuple[Relief, Relief]:
+def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     """Shape a muscle's belly, and its tendon with the hollow in front, both 1 mm high.
 
     side: 1 for the left muscle, -1 for the right one.

@@ -23,7 +23,7 @@ from .wires import Colour, beside_head, joined, tube
 
 
 @dataclass(frozen=True)
-class Frame:
+class GlassesFrame:
     """A frame of glasses.
 
     - half_width, half_height: half the width and half the height of a lens [mm].
@@ -42,11 +42,11 @@ class Frame:
     shine: float
 
 
-GLASSES_FRAMES: Mapping[str, Frame] = MappingProxyType(
+GLASSES_FRAMES: Mapping[str, GlassesFrame] = MappingProxyType(
     {
-        "round": Frame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.15),
-        "rectangular": Frame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.08),
-        "oval": Frame(25.0, 19.0, 2.6, 2.2, (0.24, 0.12, 0.06), 0.1),
+        "round": GlassesFrame(23.5, 21.5, 2.2, 1.6, (0.33, 0.28, 0.22), 0.15),
+        "rectangular": GlassesFrame(26.0, 17.5, 3.6, 2.6, (0.045, 0.045, 0.05), 0.08),
+        "oval": GlassesFrame(25.0, 19.0, 2.6, 2.2, (0.24, 0.12, 0.06), 0.1),
     }
 )
 
@@ -78,7 +78,7 @@ def wearing(
     return replace(person, parts=tuple(parts))
 
 
-def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
+def glasses(person: Person, frame: GlassesFrame, nose: Floats64 | None = None) -> Part:
     """Make glasses that fit a person.
 
     nose: points on which the glasses rest [mm], (n, 3); None: the skin.
@@ -112,7 +112,7 @@ def glasses(person: Person, frame: Frame, nose: Floats64 | None = None) -> Part:
     for side, name in ((1.0, "left"), (-1.0, "right")):
         hinge = moved[0][np.argmax(rim[:, 0] + 0.4 * rim[:, 1])]
         ear = skin[person.anatomy[f"tragion_{name}"]]
-        temple = _temple(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
+        temple = _temple_path(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
         tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
     surface = joined(tubes)
     return Part(
@@ -152,7 +152,7 @@ def _depth_at(skin: Floats64, points: Floats64) -> float:
     return max(depths, default=0.0)
 
 
-def _temple(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
+def _temple_path(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
     """Lay a temple from the hinge over the ear and down behind it: a path [mm], (n, 3)."""
     side = np.sign(hinge[0])
     top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])

@@ -27,7 +27,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.geometry.arrays import Flags, Floats64
 
-from ..canvas import CLAY_STYLE, Canvas, Drawing, Shot, image_table, parts_without_hair
+from ..canvas import CLAY_STYLE, Canvas, ComparedPicture, Drawing, image_table, parts_without_hair
 from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
 from .experiments import Outcome
 
@@ -37,7 +37,7 @@ LOOK_COLUMNS = (STATIC_REFINER, PAPERS_PRESET, FIRST_PRESET)
 
 
 @dataclass(frozen=True)
-class Cell(Shot):
+class Cell(ComparedPicture):
     """The picture of one expression in one look, and flags of the head's pixels, (H, W)."""
 
     is_head: Flags
@@ -71,7 +71,7 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
                 cell.smoother,
             )
             said = f"{cell.wrong(truth)} pixels of the outline wrong"
-            maps.append((said, _map(cell.image, is_changed, is_nearer)))
+            maps.append((said, _map_of_gains(cell.image, is_changed, is_nearer)))
         pictures = [
             (f"{name}, {cell.triangles}, {cell.rms(truth):.1f}", cell.image)
             for name, cell in zip((*LOOK_COLUMNS, "dense mesh"), cells, strict=True)
@@ -148,7 +148,7 @@ def _mean_angle(positions: Floats64, faces: npt.NDArray[np.integer]) -> float:
     return float(np.average(mesh.face_adjacency_angles, weights=lengths))
 
 
-def _map(image: Image, is_changed: Flags, is_nearer: Flags) -> Image:
+def _map_of_gains(image: Image, is_changed: Flags, is_nearer: Flags) -> Image:
     """A pale picture, with changed pixels green if they came nearer to the truth, otherwise red."""
     shown = 255 - (255 - image) // 3
     nearer_colour = (30, 150, 80)

@@ -80,17 +80,17 @@ class Experiment:
     picture: bool = False
     rounds: int | None = None
 
-    def run(self, *, rounds: int | None = None) -> Result:
+    def run(self, *, rounds: int | None = None) -> ExperimentResult:
         """Run the experiment. KeyError for a claim without a measurement."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
         module, _, name = self.function.partition(".")
         function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
         outcome: Outcome = function(**timing)
         findings = [(claim, float(outcome.values[claim.value])) for claim in self.claims]
-        return Result(self, outcome, findings)
+        return ExperimentResult(self, outcome, findings)
 
 
-class Result(NamedTuple):
+class ExperimentResult(NamedTuple):
     """A finished experiment, with a measurement for each claim."""
 
     experiment: Experiment

@@ -30,8 +30,8 @@ from ..canvas import (
     FLAT_STYLE,
     GOURAUD_STYLE,
     Canvas,
+    ComparedPicture,
     Drawing,
-    Shot,
     image_table,
     parts_without_hair,
 )
@@ -75,7 +75,7 @@ class Viewpoint:
 
 
 @dataclass(frozen=True)
-class Cell(Shot):
+class Cell(ComparedPicture):
     """The picture of one expression in one variant."""
 
     title: str
@@ -92,7 +92,7 @@ class Cell(Shot):
         picture = opening_colours[self.kinds]
         wrong_colour = (225, 30, 30)
         picture[self.wrong(truth)] = wrong_colour
-        return _smaller(picture)
+        return _reduced_picture(picture)
 
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
@@ -180,7 +180,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
                 triangles = canvas.mesh_of(refiner).triangle_count
-                cells.append(Cell(triangles, _smaller(smooth), title, of_kind))
+                cells.append(Cell(triangles, _reduced_picture(smooth), title, of_kind))
             yield viewpoint.expression, cells
 
 
@@ -195,7 +195,7 @@ def _in_green(part: HeadPart) -> Part:
     )
 
 
-def _smaller(image: Image) -> Image:
+def _reduced_picture(image: Image) -> Image:
     """Reduce a picture SUPERSAMPLING times, to its final size."""
     height = image.shape[0] // SUPERSAMPLING
     width = image.shape[1] // SUPERSAMPLING

@@ -48,7 +48,7 @@ TIMED_STAGES = (DRAWN_STAGE, SMALL_STAGE, REFINING_STAGE)
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """A row of Table 1: triangles of the static and of the refined mesh, and their times [ms]."""
 
     title: str
@@ -62,7 +62,7 @@ class Row:
     """Quartiles: half of the rounds lie between these."""
 
     @classmethod
-    def from_seconds(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> Row:
+    def from_seconds(cls, title: str, static: int, dynamic: int, seconds: Floats64) -> TableRow:
         """Make a row. seconds: times of static and refined mesh in each round, (rounds, 2)."""
         ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
         low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
@@ -71,12 +71,12 @@ class Row:
 
 
 PAPERS_ROWS = {
-    "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, 1.75),
-    "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, 2.58),
+    "face": TableRow("face, the paper", 2030, 3120, 1.3, 3.5, 1.75),
+    "plane": TableRow("plane, the paper", 154, 1328, 0.09, 2.0, 2.58),
 }
 
 
-def _measured(scene: Scene, rounds: int) -> list[Row]:
+def _measured_rows(scene: Scene, rounds: int) -> list[TableRow]:
     """Time the frame with most triangles: in a large and a tiny picture, and without drawing."""
     static = refine.create("none", scene.faces, scene.rest_positions)
     options = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
@@ -100,7 +100,7 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         lambda refiner: refiner.refine(positions), quick_rounds * rounds
     )
     return [
-        Row.from_seconds(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
+        TableRow.from_seconds(f"{scene.name}, {stage}", len(scene.faces), count, seconds[stage])
         for stage in TIMED_STAGES
     ]
 
@@ -127,7 +127,7 @@ def outcome(*, rounds: int) -> Outcome:
     with Canvas(SMALL_PICTURE_SIZE) as canvas:
         renderer = canvas.surface.gl.info["GL_RENDERER"]
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
-    measured = {scene.name: _measured(scene, rounds) for scene in scenes}
+    measured = {scene.name: _measured_rows(scene, rounds) for scene in scenes}
     values: dict[str, float] = {}
     for name, ours in measured.items():
         values[f"{name}, static triangles"] = ours[0].static

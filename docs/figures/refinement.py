@@ -9,7 +9,6 @@ Pillow draws the lines at three times the size; then the picture is reduced.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import figures
 import numpy as np
@@ -92,8 +91,14 @@ def points_in(corners: Points) -> Points:
 
 def new_points(splits: tuple[int, int, int]) -> list[int]:
     """Numbers of the points on split edges."""
-    middles = [3 + 3 * edge for edge in range(3) if splits[edge]]
-    quarters = [p + 3 * edge for edge in range(3) if splits[edge] == 2 for p in (4, 5)]
+    middles = []
+    quarters = []
+    for edge, count in enumerate(splits):
+        middle = 3 + 3 * edge
+        if count > 0:
+            middles.append(middle)
+        if count == 2:
+            quarters += [middle + 1, middle + 2]
     return middles + quarters
 
 
@@ -101,7 +106,9 @@ def triangulation(diagram: Diagram, corners: Points, splits: tuple[int, int, int
     """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL_COLOUR)
-    sides = {(min(a, b), max(a, b)) for t in subdivide(splits) for a, b in pairwise((*t, t[0]))}
+    sides = set()
+    for a, b, c in subdivide(splits):
+        sides |= {tuple(sorted(side)) for side in ((a, b), (b, c), (c, a))}
     for a, b in sorted(sides):
         diagram.line([points[a], points[b]])
     for number in new_points(splits):
@@ -134,7 +141,10 @@ def lookup() -> Image:
     diagram.line([*corners, corners[0]])
     centre = corners.mean(axis=0)
     for number, point in enumerate(points):
-        colour = INK_COLOUR if number < 3 else NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
+        if number < 3:
+            colour = INK_COLOUR
+        else:
+            colour = NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
         diagram.disc(point, colour)
         outward = point - centre
         diagram.text(point + 13 * outward / np.linalg.norm(outward), str(number), colour, 12)

@@ -64,7 +64,7 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
     mesh = RefinedMesh._make(getattr(mesh, name) for name in RefinedMesh._fields)  # fetched once
     origins = refiner.origins()
     _check_arrays(mesh, origins, len(positions), len(refiner.triangle_edges))
-    places = _rounded(origins)
+    places = _whole_parts(origins)
     points = _number_places(places, mesh)
     _check_same_places(mesh, points)
 
@@ -125,7 +125,7 @@ def _input_faces(refiner: Refiner) -> Integers64:
     return faces
 
 
-def _rounded(origins: Origins) -> _Places:
+def _whole_parts(origins: Origins) -> _Places:
     """Round weights to whole parts; raises BrokenMeshError if they are not weights."""
     _require_all(
         abs(origins.weights.sum(axis=1, dtype=np.float64) - 1.0) < 1e-5,

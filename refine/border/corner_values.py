@@ -96,13 +96,25 @@ def checked_corner_values(
     has_uv = uv is not None
     if all(corners is None for corners in indices):
         joined = np.concatenate(tables, axis=1)
-        return CornerValues(joined, None, columns, has_uv, dict.fromkeys(columns), lengths)
+        return CornerValues(
+            values=joined,
+            corners=None,
+            columns=columns,
+            has_uv=has_uv,
+            own_rows=dict.fromkeys(columns),
+            own_lengths=lengths,
+        )
     rows = np.stack([faces if corners is None else corners for corners in indices], axis=2)
     different, number = _different_rows(rows.reshape(-1, len(tables)))
     table = [values[different[:, k]] for k, values in enumerate(tables)]
     own_rows = {name: different[:, has_uv + k] for k, name in enumerate(columns)}
     return CornerValues(
-        np.concatenate(table, axis=1), number.reshape(-1, 3), columns, has_uv, own_rows, lengths
+        values=np.concatenate(table, axis=1),
+        corners=number.reshape(-1, 3),
+        columns=columns,
+        has_uv=has_uv,
+        own_rows=own_rows,
+        own_lengths=lengths,
     )
 
 

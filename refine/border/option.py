@@ -19,8 +19,8 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 import numpy as np
 
-Kind = Literal["number", "integer", "switch", "word", "choice", "object"]
-_KIND_OF_TYPE: Mapping[type, Kind] = MappingProxyType(
+OptionKind = Literal["number", "integer", "switch", "word", "choice", "object"]
+_KIND_OF_TYPE: Mapping[type, OptionKind] = MappingProxyType(
     {bool: "switch", int: "integer", float: "number", str: "word"}
 )
 LEFT_OPEN = "automatic"
@@ -40,7 +40,7 @@ class Option:
     name: str = ""
     """Name of the keyword; taken from the signature, like all fields below."""
     default: Any = None
-    kind: Kind = "object"
+    kind: OptionKind = "object"
     """Kind of its value; an object, such as an array, can be set neither by slider nor by text."""
     choices: Mapping[str, Any] = field(default_factory=dict)
     """The allowed values of a choice, by the words that stand for them."""
@@ -108,7 +108,7 @@ def _option_of(parameter: inspect.Parameter) -> Option:
         declared = next((each for each in beside if isinstance(each, Option)), declared)
     default = parameter.default
     choices = _choices_of(annotation)
-    kind: Kind = "choice" if choices else _KIND_OF_TYPE.get(type(default), "object")
+    kind: OptionKind = "choice" if choices else _KIND_OF_TYPE.get(type(default), "object")
     return replace(declared, name=parameter.name, default=default, kind=kind, choices=choices)
 
 

@@ -117,10 +117,10 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
         near_end = 5 + 3 * edge
         earlier = sequence[:position].count(edge)
         if earlier == 0:
-            triangles = _halved(triangles, start, end, middle)
+            triangles = _cut_in_two(triangles, start, end, middle)
         elif earlier < MOST_SPLITS:
-            triangles = _halved(triangles, start, middle, near_start)
-            triangles = _halved(triangles, middle, end, near_end)
+            triangles = _cut_in_two(triangles, start, middle, near_start)
+            triangles = _cut_in_two(triangles, middle, end, near_end)
         else:
             raise ValueError(
                 f"sequence {sequence} splits edge {edge} more than {MOST_SPLITS} times"
@@ -128,7 +128,7 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
     return triangles
 
 
-def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list[Triangle]:
+def _cut_in_two(triangles: list[Triangle], start: int, end: int, point: int) -> list[Triangle]:
     """Cut the subtriangle with the side from start to end in two, at a point on this side."""
     result: list[Triangle] = []
     for triangle in triangles:

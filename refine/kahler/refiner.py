@@ -8,8 +8,8 @@ Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
     place       moved vertices, first level, second level  (4.2, smoothing.py)
     look up     subtriangles of each triangle              (4.3, table.py, look_up.py)
 
-If the criterion never changes, marking, numbering and looking up are done once (`Topology`). Then
-all frames have the same triangles, and a frame only computes normals and places points.
+If the criterion never changes, marking, numbering and looking up are done once (`FixedTriangles`).
+Then all frames have the same triangles, and a frame only computes normals and places points.
 
 Differs from the paper: normals of new points are interpolated linearly and then normalised; the
 deformed mesh is copied in each frame, because a simulation may change it meanwhile.
@@ -42,7 +42,7 @@ from .smoothing import LoopScheme
 from .table import MOST_SPLITS, POINTS_OF_EDGE
 
 
-class Topology(NamedTuple):
+class FixedTriangles(NamedTuple):
     """The triangles of all frames, if they never change."""
 
     vertex_count: int
@@ -147,7 +147,7 @@ class Kahler(BaseRefiner):
             look_up()
         return vertex_count, triangle_count
 
-    def _fill_kept(self, stream: Stream, topology: Topology) -> tuple[int, int]:
+    def _fill_kept(self, stream: Stream, topology: FixedTriangles) -> tuple[int, int]:
         """Write a frame whose vertices and triangles have been numbered before."""
         vertex_count = topology.vertex_count
         triangle_count = len(topology.triangles)
@@ -166,7 +166,7 @@ class Kahler(BaseRefiner):
         return out
 
     @cached_property
-    def topology(self) -> Topology | None:
+    def topology(self) -> FixedTriangles | None:
         """The triangles of all frames if the criterion never changes, else None.
 
         It is also None if frames depend on earlier frames (`coherent`).
@@ -179,7 +179,7 @@ class Kahler(BaseRefiner):
         triangles = np.zeros((triangle_count, 3), dtype=np.uint32)
         source = np.zeros(triangle_count, dtype=np.int32)
         self._look_up(triangles, source)
-        return Topology(vertex_count, read_only(triangles), read_only(source))
+        return FixedTriangles(vertex_count, read_only(triangles), read_only(source))
 
     @cached_property
     def _own_stream(self) -> OwnStream:

@@ -121,12 +121,12 @@ def subdivide(splits: tuple[int, int, int]) -> list[Triangle]:
     rotations = [(splits[k], splits[(k + 1) % 3], splits[(k + 2) % 3]) for k in range(3)]
     turn = max(range(3), key=lambda k: rotations[k])
     return [
-        (_rotated(a, turn), _rotated(b, turn), _rotated(c, turn))
+        (_rotated_point(a, turn), _rotated_point(b, turn), _rotated_point(c, turn))
         for a, b, c in _cut_ears(outline(rotations[turn]))
     ]
 
 
-def _rotated(point: int, turn: int) -> int:
+def _rotated_point(point: int, turn: int) -> int:
     """Number of a point after renaming corner 0 to corner `turn`."""
     if point < 3:
         return (point + turn) % 3

@@ -19,9 +19,18 @@ ITEMS_OF_PART = 1 << 15
 PARTS_OF_THREAD = 4
 """Parts of the work of each thread: many, so that a slow thread delays the others only a little."""
 
-THREAD_COUNT = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
-    len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-)
+
+def _thread_count() -> int:
+    """Return the number in NUMBA_NUM_THREADS, or else that of the cores of this process."""
+    wanted = int(os.environ.get("NUMBA_NUM_THREADS") or 0)
+    if wanted:
+        return wanted
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+THREAD_COUNT = _thread_count()
 """Number of threads that share a loop, including the calling one."""
 
 _pool: ThreadPoolExecutor | None = None
@@ -33,7 +42,8 @@ def parallel_for(kernel: Callable[..., object], count: int, *arguments: object) 
     if threads == 1:
         kernel(0, count, *arguments)
         return
-    cuts = [count * k // (threads * PARTS_OF_THREAD) for k in range(threads * PARTS_OF_THREAD + 1)]
+    part_count = threads * PARTS_OF_THREAD
+    cuts = [count * part // part_count for part in range(part_count + 1)]
     parts = iter(list(pairwise(cuts)))
 
     def work() -> None:
@@ -54,7 +64,11 @@ def start_beside(task: Callable[[], object], count: int) -> Callable[[], object]
     if threads_for(count) == 1:
         return task
     other = _threads().submit(task)
-    return lambda: task() if other.cancel() else other.result()
+
+    def complete() -> object:
+        return task() if other.cancel() else other.result()
+
+    return complete
 
 
 def threads_for(count: int) -> int:

@@ -28,15 +28,15 @@ def near_pairs(corners: Floats64) -> Integers64:
     low = low[order]
     high = high[order]
     pairs = np.empty((8 * len(corners), 2), np.int64)  # more than on most surfaces
-    found = _sweep(low, high, pairs)
+    found = _sweep_boxes(low, high, pairs)
     if found > len(pairs):
         pairs = np.empty((found, 2), np.int64)
-        _sweep(low, high, pairs)
+        _sweep_boxes(low, high, pairs)
     return np.sort(order[pairs[:found]], axis=1)
 
 
 @njit
-def _sweep(low: Floats64, high: Floats64, pairs: Integers64) -> int:
+def _sweep_boxes(low: Floats64, high: Floats64, pairs: Integers64) -> int:
     """Count touching pairs of boxes (n, 3), sorted by low x, and fill `pairs` up to its size."""
     found = 0
     for one in range(len(low)):

@@ -46,7 +46,7 @@ def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
     cuts = np.zeros(len(pairs), np.bool_)
     for number in range(len(pairs)):
         one, other = pairs[number]
-        if _touch(faces[one], faces[other]):
+        if _have_common_vertex(faces[one], faces[other]):
             continue
         for k in range(3):
             after = (k + 1) % 3
@@ -60,7 +60,7 @@ def cutting(corners: Floats64, faces: Integers32, pairs: Integers64) -> Flags:
 
 
 @njit
-def _touch(one: Integers32, other: Integers32) -> bool:
+def _have_common_vertex(one: Integers32, other: Integers32) -> bool:
     """Whether two triangles have a common vertex."""
     for vertex in one:
         for twin in other:

@@ -46,10 +46,10 @@ class Texels:
             raise ValueError("texture coordinates cover the picture many times over")
         found = np.empty((0, 3), np.int64)
         weights = np.empty((0, 3))
-        count = _walk(pixels, boxes, margin, found, weights)
+        count = _walk_texels(pixels, boxes, margin, found, weights)
         found = np.empty((count, 3), np.int64)
         weights = np.empty((count, 3))
-        _walk(pixels, boxes, margin, found, weights)
+        _walk_texels(pixels, boxes, margin, found, weights)
         order = np.argsort(weights.min(axis=1), kind="stable")
         inside = np.maximum(weights[order], 0.0)
         inside /= inside.sum(axis=1, keepdims=True)
@@ -76,7 +76,7 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 
 
 @njit
-def _walk(
+def _walk_texels(
     pixels: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
 ) -> int:
     """Count all entries; write row, column, triangle and weights of the entries that fit."""

@@ -10,7 +10,7 @@ from PIL import Image
 from pytest import approx
 
 from risorius import render
-from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
+from risorius.app.anatomy import STRUCTURES, AnatomyView, DrawnAnatomy
 from risorius.app.anatomy.muscle_bands import ROW_COUNT, SECTION_POINTS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
@@ -134,7 +134,7 @@ def test_a_users_head_has_muscles_and_a_skull(tmp_path):
     head = fit_head(*user_head().write(tmp_path))
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
     scene = FaceScene(replace(head, vertices=longer))
-    anatomy = Anatomy(scene)
+    anatomy = DrawnAnatomy(scene)
     low = scene.rest_positions.min(axis=0)
     high = scene.rest_positions.max(axis=0)
     parts = {each.part.name: each.part for each in anatomy.dissect(BOTH_STRUCTURES).parts}
@@ -158,7 +158,9 @@ def test_the_coarse_head_has_muscles_and_a_skull():
     front of the spine, of which a vertebra showed through it.
     """
     scene = FaceScene(coarse_head())
-    parts = {each.part.name: each.part for each in Anatomy(scene).dissect(BOTH_STRUCTURES).parts}
+    parts = {
+        each.part.name: each.part for each in DrawnAnatomy(scene).dissect(BOTH_STRUCTURES).parts
+    }
     low = scene.rest_positions.min(axis=0) - 12.0
     high = scene.rest_positions.max(axis=0) + 2.0
     for name in ("skull_cranium", "skull_mandible", "muscles"):
@@ -252,7 +254,7 @@ def test_a_mask_is_searched_for_a_neck_once(monkeypatch):
         return []
 
     monkeypatch.setattr("risorius.app.anatomy.neck_sections", no_sections)
-    anatomy = Anatomy(FaceScene())
+    anatomy = DrawnAnatomy(FaceScene())
     for _ in range(2):
         anatomy.dissect(BOTH_STRUCTURES)
     assert len(searched) == 1

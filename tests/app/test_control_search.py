@@ -5,11 +5,13 @@ from collections.abc import Iterator
 import pytest
 
 from risorius.app.scenes import FaceScene
-from risorius.app.viewer.panels.face import Row, rows_of, search_rows
+from risorius.app.viewer.panels.face import ControlRow, rows_of, search_rows
 from risorius.app.viewer.session.document import SceneControls
 
 
-def rows_found(scene: FaceScene, words: str) -> Iterator[tuple[str, list[Row], list[Row]]]:
+def rows_found(
+    scene: FaceScene, words: str
+) -> Iterator[tuple[str, list[ControlRow], list[ControlRow]]]:
     """For each group, the rows that a search finds and all its rows."""
     values = scene.limits.pose({})
     for title, names in SceneControls(scene).groups.items():

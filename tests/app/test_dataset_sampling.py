@@ -26,8 +26,8 @@ def limits() -> dict[str, tuple[float, float]]:
 def units_of(sample):
     """The action units of a sample, without sides."""
     names = {name for name in sample.controls if name.startswith("AU")}
-    known = {name for row in paired_units() for name in (row, f"{row}_left", f"{row}_right")}
-    return {name.rpartition("_")[0] if name in known - paired_units() else name for name in names}
+    unit_of = {f"{unit}_{side}": unit for unit in paired_units() for side in ("left", "right")}
+    return {unit_of.get(name, name) for name in names}
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))

@@ -280,9 +280,8 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip, tmp_path):
     assert clip.skin.uv is not None
     assert np.allclose(obj_rows(path, "vt")[: len(clip.skin.uv)], clip.skin.uv, atol=1e-5)
     text = path.read_text()
-    assert [line[2:] for line in text.splitlines() if line.startswith("g ")] == [
-        each.name for each in clip.surfaces
-    ]
+    groups = [line[2:] for line in text.splitlines() if line.startswith("g ")]
+    assert groups == [each.name for each in clip.surfaces]
     assert "mtllib frame.mtl" in text
     assert "frame_skin.png" in (folder / "frame.mtl").read_text()
     assert (folder / "frame_skin.png").is_file()

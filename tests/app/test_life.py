@@ -235,4 +235,5 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
     values = films[0][0]
     assert max(each[f"{LID_CONTROL}_left"] for each in values) == 1.0
     assert any(each["gaze_horizontal_left"] for each in values)
-    assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]
+    scripted = [script.at(frame / 30.0)["AU12"] for frame in range(91)]
+    assert [each["AU12"] for each in values] == scripted

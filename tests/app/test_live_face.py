@@ -16,7 +16,7 @@ from risorius.app.live.live_face import (
     EASING_OUT,
     LOST_AFTER,
     LiveFace,
-    State,
+    SenderState,
 )
 from risorius.app.live.protocols import LOOPBACK_ADDRESS, PROTOCOLS, Listening
 from risorius.app.live.receiver import Receiver
@@ -90,11 +90,11 @@ def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
 
 def test_a_frame_leads_the_controls(wire):
     """Shapes become controls, with slightly stronger blinks, and a line names the sender."""
-    assert wire.face.state is State.WAITING
+    assert wire.face.state is SenderState.WAITING
     assert wire.face.presence == 0.0
     wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
     controls = wire.face.controls()
-    assert wire.face.state is State.RECEIVING
+    assert wire.face.state is SenderState.RECEIVING
     assert wire.face.subject == "Ada"
     assert wire.woken == 1
     assert wire.face.has_news
@@ -122,7 +122,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     for _ in range(62):
         wire.pass_time(1.0 / 60.0)
         presences.append(wire.face.presence)
-    assert wire.face.state is State.LOST
+    assert wire.face.state is SenderState.LOST
     assert wire.face.silence > 1.0
     assert presences[0] == 1.0
     assert presences[-1] == 0.0
@@ -141,12 +141,12 @@ def test_a_sender_without_a_face_releases_the_controls(wire):
     """Packets without values are not a lost signal, but the face returns to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
-    assert wire.face.state is State.NO_FACE
+    assert wire.face.state is SenderState.NO_FACE
     assert wire.woken == 1
     for _ in range(60):
         wire.take(live_link(None), seconds=1.0 / 60.0)
     assert wire.face.presence == 0.0
-    assert wire.face.state is State.NO_FACE
+    assert wire.face.state is SenderState.NO_FACE
 
 
 def test_calibrating_takes_the_neutral_face_away(wire):
@@ -198,7 +198,7 @@ def test_missing_values_stay(wire):
 def test_parts_of_a_frame_count_together(wire):
     """No control moves, and the window does not wake, before the message Apply."""
     wire.take(osc((VALUE_ADDRESS, "jawOpen", 0.5), (VALUE_ADDRESS, "eyeBlinkLeft", 0.6)))
-    assert wire.face.state is State.WAITING
+    assert wire.face.state is SenderState.WAITING
     assert not wire.face.channels
     assert not wire.woken
     wire.take(osc((VALUE_ADDRESS, "mouthPucker", 0.25)), osc((APPLY_ADDRESS,)))

@@ -103,10 +103,9 @@ def test_a_calibrated_take(tmp_path):
     """A take is recognised as calibrated if brows and nose are 0 at rest, unlike in a raw take."""
     columns = live_link()
     shapes = {name[0].upper() + name[1:] for name in ARKIT_SHAPES}
-    calibrated = {
-        name: np.maximum(np.array(values) - 0.2, 0.0) if name in shapes else values
-        for name, values in columns.items()
-    }
+    calibrated = dict(columns)
+    for name in shapes & columns.keys():
+        calibrated[name] = np.maximum(np.array(columns[name]) - 0.2, 0.0)
     assert read_take(written(tmp_path / "cal.csv", calibrated)).is_calibrated
     assert not read_take(written(tmp_path / "raw.csv", columns)).is_calibrated
 

@@ -68,9 +68,11 @@ def test_keys_go_and_are_eased_as_one_by_one(script, keys, easing):
     chosen = KeySet.from_keys(*keys)
     before = dict(keys_by_id(script))
     eased = keyframes.eased(script, chosen, easing)
-    assert dict(keys_by_id(eased)) == {
-        key_id: (*key[:-1], easing) if key_id in keys else key for key_id, key in before.items()
-    }
+    expected = dict(before)
+    for key_id in keys & before.keys():
+        *unchanged, _ = before[key_id]
+        expected[key_id] = (*unchanged, easing)
+    assert dict(keys_by_id(eased)) == expected
     if not keys >= set(before):
         left = keyframes.without_keys(script, chosen)
         assert dict(keys_by_id(left)) == {

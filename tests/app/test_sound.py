@@ -12,7 +12,7 @@ from pytest import approx
 
 from risorius.app.capture import outputs
 from risorius.app.capture.outputs import SOUND_FILM_SUFFIXES
-from risorius.app.capture.outputs import Soundtrack as Heard
+from risorius.app.capture.outputs import FilmSound as Heard
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script

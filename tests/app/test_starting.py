@@ -23,8 +23,11 @@ def loaded_by(*words, cache):
         check=True,
     )
     modules = result.stdout.rpartition("loaded: ")[2].split()
-    names = [module.split(".") for module in modules]
-    return {".".join(name[:2]) if name[0] == "risorius" else name[0] for name in names}
+    packages = set()
+    for module in modules:
+        words = module.split(".")
+        packages.add(".".join(words[:2]) if words[0] == "risorius" else words[0])
+    return packages
 
 
 def test_help_loads_no_library_but_click(tmp_path):

@@ -10,7 +10,7 @@ from functools import partial
 import pytest
 from pytest import approx
 
-from risorius.app.live.live_face import LiveFace, State
+from risorius.app.live.live_face import LiveFace, SenderState
 from risorius.app.live.protocols import LOOPBACK_ADDRESS, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
@@ -116,12 +116,12 @@ def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
         assert until(viewer, lambda: moved(viewer) > 8.0)
-        assert face.state is State.RECEIVING
+        assert face.state is SenderState.RECEIVING
         assert not viewer.schedule.is_idle
         assert viewer.session.current["jawOpen"] > 0.1
         assert not face.unusable
     assert until(viewer, lambda: face.presence == 0.0)
-    assert face.state is State.LOST
+    assert face.state is SenderState.LOST
     assert until(viewer, lambda: moved(viewer) < 0.3)
     assert until(viewer, lambda: viewer.schedule.is_idle)
     assert not viewer.session.work.unsaved

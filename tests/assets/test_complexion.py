@@ -26,7 +26,11 @@ from risorius.assets.identities import (
     with_colours_of_number,
 )
 from risorius.assets.identities.brows import Brows
-from risorius.assets.identities.complexion import _behind, _tints, typology_angle
+from risorius.assets.identities.complexion import (
+    _distances_behind_hairline,
+    _tints_of_size,
+    typology_angle,
+)
 from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hair import Hairline
 from risorius.assets.identities.population import IRIS_FREQUENCIES
@@ -58,7 +62,7 @@ def skin_of(head, image):
 
 def test_own_tone_is_the_shipped_picture(head):
     """With the tone of the stored picture, the picture equals the file byte by byte."""
-    tints = _tints()
+    tints = _tints_of_size()
     angle = np.interp(-SHIPPED_COMPLEXION.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
@@ -172,11 +176,11 @@ def test_bands_of_texels_have_the_colours_of_the_whole(monkeypatch):
 def test_a_hairline_is_moved_on_the_scalp_alone():
     """A shifted hairline moves only texels of the scalp, by the plain formula."""
     line = Hairline(front=4.0, temples=7.0, crown=0.6)
-    tints = _tints()
+    tints = _tints_of_size()
     plain = np.float32(complexion.SCALP_SCALE) * tints.scalp - np.float32(complexion.SCALP_OFFSET)
     moved = (plain - line.shift(len(plain))) / np.float32(1.6)
     wanted = np.where(tints.scalp > 0.01, moved, plain)
-    assert (_behind(tints, Features(hairline=line)) == wanted).all()
+    assert (_distances_behind_hairline(tints, Features(hairline=line)) == wanted).all()
 
 
 def test_the_hem_of_painted_hair_is_single_hairs():
@@ -184,7 +188,7 @@ def test_the_hem_of_painted_hair_is_single_hairs():
 
     Skin and dense hair are unchanged.
     """
-    behind = _behind(_tints(), Features())
+    behind = _distances_behind_hairline(_tints_of_size(), Features())
     plain, fringed = (
         recoloured(40.0, haired_as=40.0, fringe=fringe).astype(int).sum(axis=2)
         for fringe in (0.0, 1.0)

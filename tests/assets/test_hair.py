@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree, geometric_slerp
 
-from risorius.app.anatomy import Anatomy, AnatomyView
+from risorius.app.anatomy import AnatomyView, DrawnAnatomy
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
@@ -22,7 +22,7 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.hair import HAIR_CUTS, Fall, Hairline
-from risorius.assets.identities.long_hair import _reach, _turned
+from risorius.assets.identities.long_hair import _between_ways, _skin_reach
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.render import Style
@@ -195,7 +195,7 @@ def test_hair_is_framed_and_labelled():
     assert (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.4 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
-    anatomy = Anatomy(scene)
+    anatomy = DrawnAnatomy(scene)
     opened = AnatomyView(("muscles",))
     clay = AnatomyView()
     for seen in (anatomy.dissect(opened), anatomy.dissect(clay, has_hair=False)):
@@ -261,7 +261,7 @@ def test_strands_turn_along_great_circles(generator):
     start, end = unit_vectors(generator.normal(size=(2, 8, 3)).reshape(-1, 3)).reshape(2, 8, 3)
     shares = np.linspace(0.0, 1.0, 5)
     wanted = [geometric_slerp(*pair, shares) for pair in zip(start, end, strict=True)]
-    assert _turned(start, end, shares) == pytest.approx(np.array(wanted), abs=1e-12)
+    assert _between_ways(start, end, shares) == pytest.approx(np.array(wanted), abs=1e-12)
 
 
 def test_hair_reaches_over_the_farthest_skin_near_by(generator):
@@ -272,7 +272,7 @@ def test_hair_reaches_over_the_farthest_skin_near_by(generator):
     far = np.linalg.norm(solid, axis=1)
     weights = np.exp(120.0 * (ways @ (solid / far[:, None]).T - 1.0))
     wanted = ((weights * far**24).sum(axis=-1) / weights.sum(axis=-1)) ** (1.0 / 24.0)
-    assert _reach(ways, solid) == pytest.approx(wanted, rel=1e-12)
+    assert _skin_reach(ways, solid) == pytest.approx(wanted, rel=1e-12)
 
 
 def test_strands_stand_up_at_a_whorl_and_lie_around_it():

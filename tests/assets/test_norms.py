@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from risorius.assets.model import Head
-from risorius.assets.norms import NORMS, Sample, measures_of
+from risorius.assets.norms import NORMS, NormSample, measures_of
 
 LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
 TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"
 
 DEPTHS = {
-    "rhinion": (Sample(3.07, 0.72), LEBANON_2018),
-    "subnasale": (Sample(15.61, 2.38), LEBANON_2018),
-    "labiale_superius": (Sample(13.31, 2.01), TOMOGRAPHY_2015),
-    "labiale_inferius": (Sample(15.08, 1.94), TOMOGRAPHY_2015),
-    "pogonion": (Sample(14.69, 3.08), TOMOGRAPHY_2015),
+    "rhinion": (NormSample(3.07, 0.72), LEBANON_2018),
+    "subnasale": (NormSample(15.61, 2.38), LEBANON_2018),
+    "labiale_superius": (NormSample(13.31, 2.01), TOMOGRAPHY_2015),
+    "labiale_inferius": (NormSample(15.08, 1.94), TOMOGRAPHY_2015),
+    "pogonion": (NormSample(14.69, 3.08), TOMOGRAPHY_2015),
 }
 """Anatomical name: published depth of bone [mm] and its source; no other figure could be read.
 

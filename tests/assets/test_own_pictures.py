@@ -13,7 +13,13 @@ from scipy import ndimage
 from risorius import assets, refine
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit, fit_head
-from risorius.assets.fitting.painting import Layout, drawn_over, maps_in, sampled, texels_within
+from risorius.assets.fitting.painting import (
+    TextureLayout,
+    drawn_over,
+    maps_in,
+    sampled,
+    texels_within,
+)
 from risorius.assets.meshes import Mesh, read_mesh
 from tests.heads import UserHead, user_head
 
@@ -132,9 +138,9 @@ def test_maps_turn_with_the_layout(head):
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
     known = replace(assets.load("head"))  # a copy, whose map is replaced
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))
-    theirs = Layout(known.uv, known.face_uv)
+    theirs = TextureLayout(known.uv, known.face_uv)
     turned = 0.5 * np.column_stack([-known.uv[:, 1], known.uv[:, 0]]) + [0.5, 0.0]
-    own = Layout(turned.astype(np.float32), known.face_uv)
+    own = TextureLayout(turned.astype(np.float32), known.face_uv)
     wrinkles, _, light = maps_in(known, theirs, own)
     place = known.uv[known.face_uv].mean(axis=1).astype(np.float64)
     image = turned[known.face_uv].mean(axis=1)
@@ -229,7 +235,7 @@ def test_a_missing_library_paints_nothing(other, tmp_path):
 def test_layouts_that_cover_a_picture_many_times_are_refused():
     """Layouts that cover a picture many times are refused, because they would take hours."""
     uv = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], np.float32)
-    layout = Layout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
+    layout = TextureLayout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
     with pytest.raises(AssetError, match="many times over"):
         texels_within(layout, (1024, 1024))
 
@@ -239,8 +245,8 @@ def test_pictures_are_drawn_from_one_layout_to_another():
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
-    upright = Layout(square, faces)
-    mirrored = Layout(square[[1, 0, 3, 2]], faces)
+    upright = TextureLayout(square, faces)
+    mirrored = TextureLayout(square[[1, 0, 3, 2]], faces)
     once = drawn_over(picture, mirrored, (picture, upright))
     assert np.array_equal(once, picture[:, ::-1])
     assert np.array_equal(drawn_over(once, mirrored, (once, upright)), picture)

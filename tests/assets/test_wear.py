@@ -88,9 +88,9 @@ def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
         below = person.vertices[person.vertices[:, 1] < added[:, 1].max()]
         for point in below:
             beside = added[np.linalg.norm(added - point, axis=1) < 8.0]
-            assert not len(beside) or np.hypot(point[0], point[2] + 8.0) < (
-                np.hypot(beside[:, 0], beside[:, 2] + 8.0).max()
-            )
+            if len(beside):
+                from_neck = np.hypot(point[0], point[2] + 8.0)
+                assert from_neck < np.hypot(beside[:, 0], beside[:, 2] + 8.0).max()
         a, b, c = (worn.vertices[worn.faces[:, k]].astype(float) for k in range(3))
         across = np.cross(b - a, c - a)
         assert ((across * worn.normals[worn.faces[:, 0]]).sum(axis=1) > 0.0).mean() > 0.99

@@ -34,7 +34,7 @@ def test_smooth_surface_is_nearer_than_triangles(comparison):
 def test_edges_that_made_lumps_stay_flipped(comparison, ends):
     """Undoing a flip beside the upper lip, at the lids or at the jaw makes the normals worse."""
     layout = coarse.layout()
-    back = coarse.flipped(layout, *numbers(*ends))
+    back = coarse.with_flipped_edge(layout, *numbers(*ends))
     assert back is not None
     assert comparison.angles(back)["face"] > comparison.angles(layout)["face"] + 0.005
 
@@ -45,13 +45,13 @@ def test_flip_and_its_reverse():
     Edges of lips and missing edges have no flip.
     """
     layout = coarse.layout()
-    once = coarse.flipped(layout, *numbers(24, 130))
-    back = coarse.flipped(once, *numbers(133, 136))
+    once = coarse.with_flipped_edge(layout, *numbers(24, 130))
+    back = coarse.with_flipped_edge(once, *numbers(133, 136))
     sorted_rows = [np.unique(np.sort(each.triangles), axis=0) for each in (layout, once, back)]
     assert np.array_equal(sorted_rows[0], sorted_rows[2])
     assert not np.array_equal(sorted_rows[0], sorted_rows[1])
-    assert coarse.flipped(layout, *numbers(433, 465)) is None
-    assert coarse.flipped(layout, *numbers(133, 136)) is None
+    assert coarse.with_flipped_edge(layout, *numbers(433, 465)) is None
+    assert coarse.with_flipped_edge(layout, *numbers(133, 136)) is None
 
 
 def test_command_prints_all_groups():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from risorius.bench.gaps import LARGEST_FAULTS, Pose, inverted_count, measure
+from risorius.bench.gaps import LARGEST_FAULTS, MeasuredPose, inverted_count, measure
 
 
 @pytest.fixture(scope="module")
-def poses() -> dict[str, Pose]:
+def poses() -> dict[str, MeasuredPose]:
     """Every pose with its measured gaps."""
     return {pose.name: pose for pose in measure(0)}
 

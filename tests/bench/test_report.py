@@ -4,11 +4,11 @@ import pytest
 from click.testing import CliRunner
 
 from risorius.bench import commands, gaps, motion, quality, subjects
-from risorius.bench.gaps import Pose
+from risorius.bench.gaps import MeasuredPose
 from risorius.bench.quality import BEST_METHOD, STATIC_METHOD, Score
 
-BLINK_POSE = Pose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
-JOY_ROW = motion.Row("joy", 0.96, 1.0, 0.1, 0.8)
+BLINK_POSE = MeasuredPose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
+JOY_ROW = motion.MotionRow("joy", 0.96, 1.0, 0.1, 0.8)
 BETTER_SCORES = [
     Score(STATIC_METHOD, "joy", 1.0, 1.0, 10.0, 9.0),
     Score(BEST_METHOD, "joy", 2.0, 0.6, 6.0, 9.0),

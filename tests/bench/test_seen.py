@@ -49,7 +49,7 @@ def test_a_pair_counts_by_its_mean():
     shape = seen.compared(scores, NEUTRAL_SCORES, ("mouthSmileLeft", "mouthSmileRight"))
     assert shape == (approx(0.4), "eyeSquint", approx(0.35))
     assert shape.verdict == "seen"
-    assert seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
+    assert seen.ScoredShape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
 
 
 def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):

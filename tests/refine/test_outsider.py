@@ -15,14 +15,20 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import places_in_source, soups
 
+DOUBLE_CONES = st.builds(meshes.double_cone, st.integers(3, 60))
+IRREGULAR_MESHES = st.builds(
+    meshes.irregular,
+    st.integers(0, 99),
+    columns=st.just(4),
+    rows=st.just(3),
+    holes=st.integers(0, 2),
+)
+SMALL_MESHES = st.sampled_from([make() for make in meshes.NAMED_MESHES.values()])
 MESHES = st.one_of(
     soups(),
-    st.builds(meshes.double_cone, st.integers(3, 60)).map(lambda m: (m.vertices, m.faces)),
-    st.builds(meshes.irregular, st.integers(0, 99), st.just(4), st.just(3), st.integers(0, 2)).map(
-        lambda m: (m.vertices, m.faces)
-    ),
-    st.sampled_from([make() for make in meshes.NAMED_MESHES.values()]).map(
-        lambda m: (m.vertices, m.faces)
+    *(
+        kind.map(lambda mesh: (mesh.vertices, mesh.faces))
+        for kind in (DOUBLE_CONES, IRREGULAR_MESHES, SMALL_MESHES)
     ),
 )
 CRITERIA = ("normal", "rest", "silhouette", "displacement", "normal+rest")
@@ -34,11 +40,10 @@ def options(draw):
     """A random valid combination of options."""
     scheme = draw(st.sampled_from(["loop", "cubic", "detail"]))
     blend = draw(st.sampled_from([None, False, True]))
+    allowed = [name for name in CRITERIA if name != "displacement" or scheme != "loop"]
     return {
         "scheme": scheme,
-        "criterion": draw(
-            st.sampled_from([c for c in CRITERIA if scheme != "loop" or c != "displacement"])
-        ),
+        "criterion": draw(st.sampled_from(allowed)),
         "blend": blend,
         "coherent": blend is not True and draw(st.booleans()),
     }
@@ -69,7 +74,8 @@ def borders(mesh, face, pieces, names):
         loop.append(following[loop[-1]])
         assert len(loop) <= 12
     assert len(loop) == len(following)
-    places = [next(k for k, row in enumerate(loop) if names[row] == corner) for corner in face]
+    names_in_loop = [names[row] for row in loop]
+    places = [names_in_loop.index(corner) for corner in face]
     assert places == sorted(places)
     loop.append(start)
     ends = [*places[1:], len(loop) - 1]

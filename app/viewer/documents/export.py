@@ -27,13 +27,13 @@ from ...refining.presets import STATIC_REFINER, Refinement
 from ...rig.avatar import RigRequest
 from ...rig.writing import make_avatar
 from ...text import as_text
-from ...workers import Task
+from ...workers import BackgroundWork
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
 from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import SceneView, Stage, style_of
 from ..session.session import Session
-from ..settings import EXPORT_KINDS, FRAMES_KIND, TONE_ANGLES, ExportChoices, Kind, Settings
+from ..settings import EXPORT_KINDS, FRAMES_KIND, TONE_ANGLES, ExportChoices, ExportKind, Settings
 from .file_dialogs import FileDialogs
 
 
@@ -42,7 +42,7 @@ class ExportJob:
     """A running export."""
 
     target: Path
-    task: Task
+    task: BackgroundWork
     shown_fraction: float = 0.0  # share of the finished work that the window displayed last
 
 
@@ -63,15 +63,18 @@ class Exporter:
         return self._settings.export
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> ExportKind:
         """The chosen kind of file."""
         return EXPORT_KINDS[self.choices.kind]
 
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
         stem = Path.cwd() / time.strftime("risorius-%Y%m%d-%H%M%S")
-        names = (f"{stem}{extra}.png" for extra in ("", *(f"-{n}" for n in range(2, 1000))))
-        target = next(path for path in map(Path, names) if not path.exists())
+        target = Path(f"{stem}.png")
+        number = 1
+        while target.exists():
+            number += 1
+            target = Path(f"{stem}-{number}.png")
         save_png(target, self._stage.draw_image(self._view))
         return f"Written to {target}"
 
@@ -110,7 +113,7 @@ class Exporter:
         request = RigRequest(adds_parts=True, progress=False)
         work = partial(make_avatar, head, target, request, _discard_line)
         written = 8  # comparing and writing take as long as this number of shapes
-        self.job = ExportJob(target, Task(work, len(ARKIT_SHAPES) + written, wake_up))
+        self.job = ExportJob(target, BackgroundWork(work, len(ARKIT_SHAPES) + written, wake_up))
         return None
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
@@ -154,7 +157,7 @@ class Exporter:
             check_request(target, chosen, request)
             write = partial(export, head=head, frames_per_second=choices.rate)
             work = partial(write, script, target, chosen, request)
-        task = Task(work, round(script.duration * choices.rate) + 1, wake_up)
+        task = BackgroundWork(work, round(script.duration * choices.rate) + 1, wake_up)
         self.job = ExportJob(target, task)
         return None
 

@@ -40,7 +40,7 @@ Colour = tuple[float, float, float]  # sRGB
 
 
 @dataclass(frozen=True)
-class Group:
+class MarkingGroup:
     """A group of landmarks that are marked one after another.
 
     lines: for each drawn line, the numbers of its landmarks.
@@ -61,12 +61,12 @@ def _row(first: int, last: int, *more: int) -> tuple[int, ...]:
 
 
 MARKING_GROUPS = (  # in the order of marking
-    Group("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42))),
-    Group("outer lips", (0.86, 0.18, 0.26), (_row(48, 59, 48),)),
-    Group("inner lips", (0.93, 0.76, 0.20), (_row(60, 67, 60),)),
-    Group("nose", (0.10, 0.62, 0.42), (_row(27, 30), _row(31, 35))),
-    Group("brows", (0.58, 0.36, 0.84), (_row(17, 21), _row(22, 26))),
-    Group("jaw line", (0.16, 0.48, 0.88), (_row(0, 16),)),
+    MarkingGroup("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42))),
+    MarkingGroup("outer lips", (0.86, 0.18, 0.26), (_row(48, 59, 48),)),
+    MarkingGroup("inner lips", (0.93, 0.76, 0.20), (_row(60, 67, 60),)),
+    MarkingGroup("nose", (0.10, 0.62, 0.42), (_row(27, 30), _row(31, 35))),
+    MarkingGroup("brows", (0.58, 0.36, 0.84), (_row(17, 21), _row(22, 26))),
+    MarkingGroup("jaw line", (0.16, 0.48, 0.88), (_row(0, 16),)),
 )
 GROUP_OF = {number: group for group in MARKING_GROUPS for number in group.numbers}
 MARKING_ORDER = tuple(GROUP_OF)

@@ -31,7 +31,7 @@ from ..timeline.keys import KeySelection, listed, movers_of
 
 
 @dataclass(frozen=True)
-class Row:
+class ControlRow:
     """One row: the shared name of its controls, and the controls with bars.
 
     names: the controls with bars, in the order: both sides, subject's right side, left side.
@@ -51,7 +51,7 @@ class Row:
         whole: str,
         values: Mapping[str, float],
         linked: bool,
-    ) -> Row:
+    ) -> ControlRow:
         """Return a row for both sides, with one bar if they are linked and equal.
 
         whole: the control for both sides, or ""; has a bar if no side has one, or if it is not 0.
@@ -67,7 +67,7 @@ class Row:
         return cls(label, (*first, *apart), sides, is_linked)
 
 
-def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
+def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[ControlRow]:
     """Return the rows of a group.
 
     linked: whether both sides share a bar while they are equal. While they are 0, a control for
@@ -81,22 +81,22 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
         if not side:
             sides = (f"{name}_right", f"{name}_left")
             if split_side(twin)[0] == name != twin:  # a control for one side, such as a wink
-                rows.append(Row(name, (twin, name)))
+                rows.append(ControlRow(name, (twin, name)))
             elif not known.issuperset(sides):
-                rows.append(Row(name, (name,)))
+                rows.append(ControlRow(name, (name,)))
             else:
-                rows.append(Row.of_sides(name, sides, name, values, linked))
+                rows.append(ControlRow.of_sides(name, sides, name, values, linked))
         elif base in ONE_MOTION_BASES or twin not in known:
-            rows.append(Row(name, (name,)))
+            rows.append(ControlRow(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
             whole = base if values.get(base) else ""  # set by a script, and in no group
-            rows.append(Row.of_sides(base, (twin, name), whole, values, linked))
+            rows.append(ControlRow.of_sides(base, (twin, name), whole, values, linked))
     return rows
 
 
 def search_rows(
-    rows: Iterable[Row], query: str, *, group: str, actions: Mapping[str, str]
-) -> list[Row]:
+    rows: Iterable[ControlRow], query: str, *, group: str, actions: Mapping[str, str]
+) -> list[ControlRow]:
     """Return the rows in which all words of the query occur.
 
     Words are searched in names, groups, actions of controls, and synonyms.
@@ -104,7 +104,7 @@ def search_rows(
     return [row for row in rows if is_found(query, _text_of(row, group, actions), row.names)]
 
 
-def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
+def _text_of(row: ControlRow, group: str, actions: Mapping[str, str]) -> str:
     action = actions.get(row.names[-1], "")
     names = " ".join((row.label, *row.names, *row.sides))
     groups = (group, words_of_group(group))
@@ -123,9 +123,9 @@ class ControlRows:
         self._view = app.view
         self._selection = selection
         self._asked: tuple[str, ...] = ()  # the controls whose menu is open
-        self._rows: dict[tuple[str, ...], list[Row]] = {}
+        self._rows: dict[tuple[str, ...], list[ControlRow]] = {}
 
-    def rows_for(self, names: tuple[str, ...]) -> list[Row]:
+    def rows_for(self, names: tuple[str, ...]) -> list[ControlRow]:
         """Return the rows of these controls; during a drag, the rows from its beginning."""
         if names not in self._rows or not imgui.is_any_item_active():
             current = self._session.current
@@ -133,7 +133,7 @@ class ControlRows:
             self._rows[names] = rows_of(names, current, linked=linked)
         return self._rows[names]
 
-    def draw(self, row: Row, *, number: int = 0, is_marked: bool = False) -> None:
+    def draw(self, row: ControlRow, *, number: int = 0, is_marked: bool = False) -> None:
         """Draw one row; the name of an expression is also a button.
 
         number: the number key that shows the expression, or 0. is_marked: highlights the row.
@@ -179,7 +179,7 @@ class ControlRows:
             weights = (Counter(session.scene.moved_by(each)) for each in meant)
             self._view.pointed = reduce(or_, weights)  # the largest share of each muscle
 
-    def _draw_menu(self, row: Row) -> None:
+    def _draw_menu(self, row: ControlRow) -> None:
         """Draw the menu of a bar, if it was opened in this row."""
         names = self._asked
         if not set(names) <= {*row.names, *row.sides} or not imgui.begin_popup("control menu"):
@@ -211,7 +211,7 @@ class ControlRows:
             self._session.set(name, 0.0)
         self._session.note()
 
-    def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
+    def _draw_label(self, row: ControlRow, room: float, number: int, *, is_lit: bool) -> bool:
         """Draw code and name; return whether the mouse is on them."""
         theme = self._gui.theme
         session = self._session
@@ -330,7 +330,7 @@ class FacePanel:
                 self._draw_row(row)
         return len(rows)
 
-    def _draw_row(self, row: Row) -> None:
+    def _draw_row(self, row: ControlRow) -> None:
         # A muscle whose halves act together may have only one bar.
         whole = (self._selected or "").removesuffix("_left").removesuffix("_right")
         is_selected = bool({self._selected, whole} & {*row.names, *row.sides})

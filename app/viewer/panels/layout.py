@@ -41,7 +41,7 @@ def draw_message(gui: Gui, messages: Messages, view: SceneView) -> None:
     gui.places["message"] = (place.x, place.y, place.x + size.x, place.y + size.y)
 
 
-class Layout:
+class PanelLayout:
     """Draws everything around the picture, and gives the picture its place."""
 
     def __init__(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from imgui_bundle import imgui
 
 from ...control_names import sentence
-from ...live.live_face import LiveFace, State
+from ...live.live_face import LiveFace, SenderState
 from ...live.protocols import ANY_ADDRESS, LOOPBACK_ADDRESS, PROTOCOLS
 from ...recordings.calibration import HIGHEST_GAIN
 from ...recordings.names import ANGLE_NAMES
@@ -51,7 +51,7 @@ class LivePanel:
         command_button(gui, messages, self._commands["Listen"], label, name="listen", width=-1.0)
         face = live.face  # the button may have changed it
         imgui.push_text_wrap_pos(0.0)
-        is_received = face is not None and face.state is State.RECEIVING
+        is_received = face is not None and face.state is SenderState.RECEIVING
         ink = gui.theme.accent if is_received else gui.theme.text
         imgui.text_colored(colour(ink), sentence(state_in_words(face)))
         gui.remember("live state")
@@ -120,11 +120,11 @@ def state_in_words(face: LiveFace | None) -> str:
     if face is None:
         return "not listening"
     who = f" {face.subject}" if face.subject else ""
-    if face.state is State.RECEIVING:
+    if face.state is SenderState.RECEIVING:
         return f"receiving{who}, {face.rate:.0f} frames a second"
-    if face.state is State.NO_FACE:
+    if face.state is SenderState.NO_FACE:
         return f"{who.strip() or 'the sender'} sees no face"
-    if face.state is State.LOST:
+    if face.state is SenderState.LOST:
         return f"lost{who}: packets have stopped"
     if face.received:
         return (
@@ -136,7 +136,7 @@ def state_in_words(face: LiveFace | None) -> str:
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:
     """Return the user's next step while no face is received, or the number of unusable packets."""
-    if face.state is not State.WAITING or face.received:
+    if face.state is not SenderState.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"
     if face.listening.address == LOOPBACK_ADDRESS:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...errors import UserError
-from ...live.live_face import LOST_AFTER, LiveFace, State
+from ...live.live_face import LOST_AFTER, LiveFace, SenderState
 from ...live.protocols import Listening, own_address
 from ..messages import Message
 from .session import Session
@@ -120,7 +120,7 @@ class LiveCommands:
     @property
     def is_receiving(self) -> bool:
         """Whether a face is visible, and another packet can be expected soon."""
-        return self.face is not None and self.face.state is State.RECEIVING
+        return self.face is not None and self.face.state is SenderState.RECEIVING
 
     def due_in(self) -> float:
         """Return how long the window may sleep [s], until the face counts as lost."""

@@ -32,7 +32,7 @@ EARLY_FRACTION = 0.25
 CALM_SECONDS = 0.15  # [s] without change until physics rests, and the scene has full detail
 PHASE_NAMES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 
-Life = Callable[[float], Mapping[str, float]]  # seconds -> values to add to controls
+LifeValues = Callable[[float], Mapping[str, float]]  # seconds -> values to add to controls
 
 
 class FrameTimes:
@@ -141,7 +141,7 @@ class Physics:
         *,
         is_skin_dragged: bool,
         is_urgent: bool = False,
-        life: Life | None = None,
+        life: LifeValues | None = None,
     ) -> None:
         """Take the due steps; take none if the face rests, and neither user nor idle life moves it.
 
@@ -178,7 +178,7 @@ class Physics:
             self._seen = scene.positions.copy()
             self._seen_bones = scene.bone_transforms()
 
-    def _step(self, steps: int, life: Life | None) -> None:
+    def _step(self, steps: int, life: LifeValues | None) -> None:
         """Take steps; raises UserError if the simulation fails."""
         session = self._session
         scene = self._session.scene

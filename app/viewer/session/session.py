@@ -120,7 +120,9 @@ class Session:
     # Undo
 
     def _document(self) -> Document:
-        values = None if self.is_following else {n: v for n, v in self.values.items() if v}
+        values = None
+        if not self.is_following:
+            values = {name: value for name, value in self.values.items() if value}
         return Document(values, self.script, self.file, self.time)
 
     def note(self) -> None:

@@ -13,7 +13,7 @@ from ..documents.file_drop import FileDrop
 from ..interface.commands import Command, MenuBar
 from ..messages import Message, Task
 from ..panels.face import FacePanel
-from ..panels.layout import Layout
+from ..panels.layout import PanelLayout
 from ..panels.live import LivePanel
 from ..panels.mechanism import MechanismPanel
 from ..panels.scene import ScenePanel
@@ -93,7 +93,7 @@ class FaceMode:
         }
         if scene.face is not None:  # a plane has no live face
             tabs["Live"] = live.draw
-        self.layout = Layout(context, menu_bar, tabs, self.timeline)
+        self.layout = PanelLayout(context, menu_bar, tabs, self.timeline)
 
     @property
     def name(self) -> str:

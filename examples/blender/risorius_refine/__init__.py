@@ -41,12 +41,14 @@ def values_of(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
 
     Blender's internal values and positions are left out.
     """
-    return {
-        each.name: numbers(each.data, VALUE_FIELDS.get(each.data_type, "vector"), width, np.float32)
-        for each in mesh.attributes
-        if each.domain == "POINT" and (width := VALUE_WIDTHS.get(each.data_type))
-        if each.name not in WRITTEN_ATTRIBUTES and not each.name.startswith(".")
-    }
+    found = {}
+    for each in mesh.attributes:
+        is_internal = each.name in WRITTEN_ATTRIBUTES or each.name.startswith(".")
+        if each.domain == "POINT" and each.data_type in VALUE_WIDTHS and not is_internal:
+            field = VALUE_FIELDS.get(each.data_type, "vector")
+            width = VALUE_WIDTHS[each.data_type]
+            found[each.name] = numbers(each.data, field, width, np.float32)
+    return found
 
 
 class Bound:

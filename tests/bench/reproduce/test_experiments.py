@@ -16,14 +16,14 @@ from risorius.bench.reproduce.experiments import (
     Experiment,
     Outcome,
 )
-from risorius.bench.reproduce.table1 import Row
+from risorius.bench.reproduce.table1 import TableRow
 from tests.app.command_line import risorius
 
 
 def test_pairs_are_compared_round_by_round():
     """The ratio c_rt does not change when the machine becomes ten times slower meanwhile."""
     times = np.array([[1.0, 3.0]] * 5 + [[10.0, 30.0]] * 6)
-    row = Row.from_seconds("", 100, 200, times)
+    row = TableRow.from_seconds("", 100, 200, times)
     assert (row.ratio, row.quartiles) == (1.5, (1.5, 1.5))
 
 

@@ -102,8 +102,8 @@ def test_t_junction(frame):
     refiner, refined, deformed = frame
     counts = np.bincount(refined.source)
     source = int(np.flatnonzero(counts > 1)[0])
-    edges = refiner.edges[refiner.triangle_edges[source]]
-    corners = [int((set(edges[k - 1]) & set(edges[k])).pop()) for k in range(3)]
+    edges = [set(edge) for edge in refiner.edges[refiner.triangle_edges[source]].tolist()]
+    corners = [(edges[k - 1] & edges[k]).pop() for k in range(3)]
     keep = refined.source != source
     whole = refined._replace(
         triangles=np.concatenate([refined.triangles[keep], np.array([corners], dtype=np.uint32)]),
