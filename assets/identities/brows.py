@@ -169,8 +169,9 @@ def _map() -> scipy.interpolate.RBFInterpolator:
 def stubble(size: int) -> Floats32:
     """Paint stubble: the fraction of each texel that it covers, 0 to 1, (size, size)."""
     random = np.random.default_rng(0).random((size, size), np.float32)
-    hairs = scipy.ndimage.gaussian_filter(random, (1.4, 0.55))
-    hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 0.6, 0.0, 2.0) / 2.0
+    # A hair is finer than a texel, so it covers a part of one; hairs are short, and many overlap.
+    hairs = scipy.ndimage.gaussian_filter(random, (0.9, 0.38))
+    hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 1.2, 0.0, 3.0) / 5.5
     across = np.abs(np.linspace(-0.5, 0.5, size))
     down = np.linspace(0.0, 1.0, size)[:, None]
     # Stubble ends on the neck, although the map of the beard continues around it.

@@ -200,8 +200,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (LENGTHWISE_FACTOR if cut.knot else 1.0) * radius * away
     striation = np.column_stack([radius * angle, along, way, dense])
-    # Cropped hair shines little: its tips point outward, so no ring of highlights surrounds the
-    # whorl.
+    # Cropped hair shines little: its tips point outward, so no bright ring surrounds the whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
         name=HAIR_NAME,
@@ -218,9 +217,18 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     growth = TIED_HAIR if cut.knot else replace(SHORT_HAIR, least=least)
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
     upward_fraction = 0.8
-    hangs = (normals[:, 1] < upward_fraction) | ((0.3 < dense) & (behind < 2.0 * hem_depth))
+    hangs = (normals[:, 1] < upward_fraction) | (behind < 2.0 * hem_depth)
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
-    return from_within(hair, faces[hangs[faces].all(axis=1)]), hair, locks_on(hair, growth)
+    inside = from_within(_with_dense_hem(hair), faces[hangs[faces].all(axis=1)])
+    return inside, hair, locks_on(hair, growth)
+
+
+def _with_dense_hem(hair: Part) -> Part:
+    """Return hair that is dense up to its hem, under which a view along the skin passes."""
+    assert hair.striation is not None
+    striation = hair.striation.copy()
+    striation[:, 5] = np.minimum(3.0 * striation[:, 5] + 0.8, 2.0)
+    return replace(hair, striation=striation)
 
 
 def _over_skin(

@@ -51,7 +51,9 @@ class Growth:
     fringe: float = 3.0
 
 
-SHORT_HAIR = Growth(5600, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.24, half=0.17)
+SHORT_HAIR = Growth(
+    5600, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.32, half=0.1, lying=0.03
+)
 TIED_HAIR = Growth(
     count=4400,
     root=0.5,
@@ -125,7 +127,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
-    thin *= 1.0 + 3.0 * upright
+    thin *= 1.0 + 8.0 * upright
     half = (FINEST_RADIUS + (growth.half - FINEST_RADIUS) * thin)[:, None] * (1.0 - t**2)
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)

@@ -61,19 +61,18 @@ def falling_hair(
     level_of_widest = np.array([0.0, -0.1, 0.0])  # strands leave the head a little below its centre
     directions = _between_ways(roots, unit_vectors(level + level_of_widest), over)
     across = 88.0 * side * (np.pi - angle)
-    uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
     # Beside the face the outer surface of the hair curves inward to its inner surface.
     beside = np.clip((angle - HAIR_EDGE_ANGLE) / ROUNDING_ANGLE, 0.0005, 1.0)
-    ragged_depth = 3.0  # [mm] of uneven tips, in waves of many strands: shorter ones are teeth
     layered_rise = 16.0  # [mm] that tips rise in front
-    ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + ragged_depth * uneven
+    ends = ear[1] - cut.below * length + layered_rise * (1.0 - beside) ** 3 + _tip_heights(across)
     rise = np.clip(over / 0.35, 0.0, 1.0)  # 0 at the root, 1 where the volume is full
     risen = 0.1 + 0.9 * np.sin(0.5 * np.pi * rise)
     thick = HAIR_HEIGHT * risen * np.sin(0.5 * np.pi * beside)[:, None]
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
-    places = middle + (_skin_reach(directions, solid) + clearance + thick)[..., None] * directions
+    far = _skin_reach(directions, solid) + clearance + _lock_thickness(across) * thick
+    places = middle + far[..., None] * directions
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
     height = start[..., 1] + drop * (ends[:, None] - start[..., 1])
@@ -92,8 +91,39 @@ def falling_hair(
     # strands in front would look like bars over the skin.
     dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
     dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
-    hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, colour, _slide_of(along))
+    tones = _lock_lightness(across) * colour
+    hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, tones, _slide_of(along))
     return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
+
+
+def _lock_heights(across: Floats64) -> Floats64:
+    """Return how far wide locks stand out at strands, about -1 to 1; across: strands [mm], (n,)."""
+    wide = np.sin(0.16 * across + 1.5)
+    narrow = 0.7 * np.sin(0.37 * across) + 0.5 * np.sin(0.61 * across)
+    return np.asarray((wide + narrow) / 2.2)
+
+
+def _lock_thickness(across: Floats64) -> Floats64:
+    """Return factors on the thickness of hair with locks, (n, 1); across: as `_lock_heights`."""
+    depth = 0.5  # of grooves, as a fraction of the thickness
+    locks = _lock_heights(across)
+    return np.asarray(1.2 + depth * (locks - locks.max())[:, None])
+
+
+def _lock_lightness(across: Floats64) -> Floats64:
+    """Return factors on the colour of locks, (n, 1, 1); across: as in `_lock_heights`.
+
+    They do not follow the heights of locks, or dark grooves would look like folds of cloth.
+    """
+    difference = 0.2  # from the mean lightness
+    return np.asarray(1.0 + difference * np.roll(_lock_heights(across), 1)[:, None, None])
+
+
+def _tip_heights(across: Floats64) -> Floats64:
+    """Return heights of uneven tips above their mean [mm], (n,); across: strands [mm], (n,)."""
+    depth = 3.0  # [mm]; waves are as wide as many strands, because narrow ones are teeth
+    uneven = 0.6 * np.sin(0.11 * across) + 0.4 * np.sin(0.047 * across + 1.0)
+    return np.asarray(depth * uneven)
 
 
 def _with_tips(hair: Part, sample_count: int) -> tuple[Part, ...]:
@@ -188,9 +218,9 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         thick = tied_width + (1.0 - tied_width) * free
         root_width = 1.0  # thickness on the scalp, as a fraction of the full thickness
         thick += (root_width - tied_width) * (1.0 - smooth_step(0.0, tie_distance, far))
-        thick *= np.sqrt(1.0 - 0.9995 * t**3)
+        thick *= 1.0 - 0.55 * t**2 - 0.4 * t**8
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
-        tail_hem = 12.0  # [mm] over which tips thin out
+        tail_hem = 28.0  # [mm] over which tips thin out
         dense = np.minimum(far / root_depth, (far[-1] - far) / tail_hem)
         # Number of locks, width of a lock [mm], depth of the grooves between locks as a fraction
         # of the radius, and turns of the locks around the axis.

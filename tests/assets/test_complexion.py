@@ -25,7 +25,7 @@ from risorius.assets.identities import (
     sample_identity,
     with_colours_of_number,
 )
-from risorius.assets.identities.brows import Brows
+from risorius.assets.identities.brows import Brows, stubble
 from risorius.assets.identities.complexion import (
     _distances_behind_hairline,
     _tints_of_size,
@@ -368,3 +368,12 @@ def test_small_pictures_have_the_same_colours_of_fewer_texels(number):
     assert (whole.segments == small.segments).all()
     for one, other in zip(whole.parts, small.parts, strict=True):
         assert (one.vertices == other.vertices).all()
+
+
+def test_stubble_is_finer_than_texels():
+    """A hair covers a part of a texel, so its neighbours differ; stubble was large black dots."""
+    hairs = stubble(1280)[850:1050, 540:740]
+    assert 0.1 < hairs.mean() < 0.4
+    assert hairs.max() < 0.6
+    across = np.corrcoef(hairs[:, 1:].ravel(), hairs[:, :-1].ravel())[0, 1]
+    assert across < 0.2

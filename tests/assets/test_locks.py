@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
 from risorius.app.capture import Capture, CaptureOptions
@@ -102,6 +103,14 @@ def test_locks_of_the_nape_lie_side_by_side(name):
     is_low = roots[:, 1] < np.percentile(roots[:, 1], 25.0)
     is_behind = roots[:, 2] < np.median(roots[:, 2])
     assert np.percentile(agreement[is_low & is_behind], 5.0) > 0.93
+
+
+def test_no_light_shines_below_the_hem_of_tied_hair():
+    """From below the head of person 91000190 has no hole; 150 pixels between skin and hair had."""
+    is_clear = picture(91000190, "20,-20", (1000, 1000))[..., 3] < 200.0
+    regions, _ = label(is_clear, np.ones((3, 3)))
+    outer = np.concatenate([regions[0], regions[-1], regions[:, 0], regions[:, -1]])
+    assert (~np.isin(regions, outer)).sum() < 20
 
 
 @pytest.mark.parametrize(("name", "least"), [(3, 300), (8, 300), (11, 60), (66, 60)])
