@@ -214,6 +214,36 @@ def bench_persons(count: int) -> None:
     conclude(persons.report(rows), persons.targets(rows))
 
 
+@bench.command("recognition")
+@click.option(
+    "--first",
+    type=click.IntRange(0),
+    default=3000,
+    show_default=True,
+    help="Number of the first person.",
+)
+@click.option(
+    "--count",
+    type=click.IntRange(3, 10000),
+    default=40,
+    show_default=True,
+    help="Number of persons.",
+)
+@click.option("--model", type=FILE_TYPE, help="shape_predictor_68_face_landmarks.dat of dlib.")
+@click.option("--network", type=FILE_TYPE, help="dlib_face_recognition_resnet_model_v1.dat.")
+def bench_recognition(first: int, count: int, model: Path | None, network: Path | None) -> None:
+    """Measure how far apart persons are for dlib's face recognition."""
+    from . import landmarks, recognition
+
+    if not landmarks.is_installed("dlib"):
+        click.echo("skipped: dlib is not installed; pip install '.[dlib]' brings it")
+        return
+    describe = recognition.open_network(model, network)
+    descriptions = recognition.measure(range(first, first + count), describe)
+    text = f"persons {first} to {first + count - 1}: {len(descriptions)} faces found"
+    conclude(text, recognition.targets(descriptions))
+
+
 @bench.command("human")
 @needed_reference
 @click.option(

@@ -142,16 +142,20 @@ def _dlib(model: Path | None) -> Detector:
     return detect
 
 
-def packaged_model() -> Path:
-    """The predictor in the package face_recognition_models."""
+def packaged_model(
+    name: str = "shape_predictor_68_face_landmarks.dat", option: str = "--model"
+) -> Path:
+    """A file of the package face_recognition_models; by default the predictor.
+
+    option: the option that takes the file instead, for the error. Raises UserError without package.
+    """
     package = importlib.util.find_spec("face_recognition_models")
     places = list(package.submodule_search_locations or ()) if package else []
     if not places:
         raise UserError(
-            "--model: give shape_predictor_68_face_landmarks.dat, or install the package "
-            "face_recognition_models, which has it"
+            f"{option}: give {name}, or install the package face_recognition_models, which has it"
         )
-    return Path(places[0]) / "models" / "shape_predictor_68_face_landmarks.dat"
+    return Path(places[0]) / "models" / name
 
 
 @contextlib.contextmanager

@@ -71,7 +71,7 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     name = other_names.get(name.lower(), name)
     for spellings in ([name], [f"{name}Left", f"{name}Right"]):
         shapes = [shape_of(each) or "" for each in spellings]
-        if set(shapes) <= set(simulation.controls.tables.weights):
+        if set(shapes) <= set(simulation.controls.tables.shares):
             return shapes
     return []
 

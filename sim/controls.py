@@ -78,7 +78,7 @@ class Controls:
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
         self.lowest = tuple(control.name for control in controls)
         self.tables = layers
-        self.names = (*self.lowest, *layers.weights)
+        self.names = (*self.lowest, *layers.shares)
         self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
@@ -94,7 +94,7 @@ class Controls:
         self._most = bounds[:, 1] + slack
         self._low, self._high = bounds[: len(controls)].T.copy()
         self._rate = np.array([control.rate for control in controls], dtype=np.float64)
-        self._weights = np.array([layers.weights[name] for name in layers.weights])  # (N - C, C)
+        self._weights = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
         floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
         self._floored = np.flatnonzero(floors.any(axis=1))  # only few rows of layers have floors
         self._floors = floors[self._floored]
@@ -257,7 +257,7 @@ class MuscleDrive:
 def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:
     """Return the limits of each control; a control for both sides has the limits of one side."""
     limits = {control.name: (control.low, control.high) for control in controls}
-    for name in layers.weights:
+    for name in layers.shares:
         sides = [limits[name + side] for side in SIDE_ENDINGS if name + side in limits]
         of_both = sides and name in layers.groups.get(BOTH_SIDES, ())
         limits[name] = sides[0] if of_both else (0.0, 1.0)

@@ -78,14 +78,14 @@ class Layers:
 
     groups: title of the layer -> its names, from the lowest layer up.
     actions: name -> its effect, in words; "" if the table has none.
-    weights: name -> its addition to each of the C lowest controls at value 1, shape (C,).
+    shares: name -> its addition to each of the C lowest controls at value 1, shape (C,).
     floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
     share_of: name -> the control in the row's `share_of`, where there is one.
     """
 
     groups: Mapping[str, tuple[str, ...]]
     actions: Mapping[str, str]
-    weights: Mapping[str, Floats64]
+    shares: Mapping[str, Floats64]
     floors: Mapping[str, Floats64]
     share_of: Mapping[str, str]
 
@@ -123,7 +123,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     return Layers(
         groups=MappingProxyType({title: names for title, names in reader.groups.items() if names}),
         actions=MappingProxyType(reader.actions),
-        weights=MappingProxyType({name: read_only(row) for name, row in weights}),
+        shares=MappingProxyType({name: read_only(row) for name, row in weights}),
         floors=MappingProxyType({name: read_only(row) for name, row in floors}),
         share_of=MappingProxyType(reader.share_of),
     )

@@ -46,7 +46,7 @@ def solved(
     moved = _muscles_of(scene, layer)
     tables = moved.tables
     frames = np.stack([activations[name] for name in moved.lowest], axis=1)
-    weights = np.stack([tables.weights[name] for name in names])
+    weights = np.stack([tables.shares[name] for name in names])
     highest = np.array([scene.limits[name][1] for name in names])
     known = _set_values(names, tables, controls or {}, len(frames), highest)
     rest = frames - _sums(known, weights, np.stack([tables.floors[name] for name in names]))
