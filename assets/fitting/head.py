@@ -34,6 +34,7 @@ from ..meshes import Mesh, read_mesh
 from ..model import Eye, FineShape, Head, Part, Wrinkles
 from ..user_files import named
 from . import simplifying
+from .coarse_painting import TexturePlaces, repainted, small_triangles, texture_places
 from .face_place import ORIENTING_LANDMARKS, is_face, placed
 from .fillings import filling_of
 from .jaw_place import jaw_axis_of, with_human_opening
@@ -52,6 +53,7 @@ from .mesh_validation import (
     SkinPiece,
     check_manifold,
     check_openings,
+    check_size,
     notes_of_shut_eyes,
     skin_of,
     vertices_of_pieces,
@@ -201,6 +203,7 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
     the positions of the vertices. Raises AssetError for an unusable mesh.
     """
     known = load("head")
+    are_exact = points is not None
     points = mesh.vertices[landmarks] if points is None else points
     faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
     skin = skin_of(mesh.vertices, faces, landmarks)
@@ -224,7 +227,8 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
         carried = _on_finer(carried, coarse, skin)
     else:
         carried = _carried_over(known, skin, target, pieces, jaw)
-    layout, albedo, maps = _skin_layout(mesh, own, skin, TextureLayout(carried.uv, skin.faces))
+    places = texture_places(known, skin, target, are_exact, carried.uv)
+    layout, albedo, maps = _skin_layout(mesh, own, skin, places)
     wrinkles, segments, light = maps
     order = fading_last(skin.vertices, skin.faces, skin.landmarks)
     return FittedHead(
@@ -344,7 +348,7 @@ def _checked_skin(skin: SkinPiece) -> SkinPiece:
 
     Raises AssetError for an unusable skin.
     """
-    _check_size(skin)
+    check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
     check_lips(skin)
@@ -355,38 +359,28 @@ def _skin_layout(
     mesh: Mesh,
     own: tuple[Image, TextureLayout] | None,
     skin: SkinPiece,
-    built_in: TextureLayout,
+    places: TexturePlaces,
 ) -> tuple[TextureLayout, Image, tuple[Wrinkles, Image, Image]]:
     """Return layout and texture of the skin, and maps in this layout (see `maps_in`).
 
-    own: texture of the file, and its layout; None if the file has no texture. built_in: layout of
-    the skin in the built-in texture.
+    own: texture of the file, and its layout; None if the file has no texture.
     """
     known = load("head")
     if own is not None:
         height, width = own[0].shape[:2]
-        return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
+        drawn = small_triangles(own[1], places.cuts)
+        return own[1], own[0], maps_in(known, places.small, drawn, (height, width))
     picture, light = own_skin(known, skin)
+    maps = (known.wrinkles, known.segments, light)
+    if places.cuts:
+        picture, maps = repainted(known, skin, places, picture)
     has_colours = mesh.colours is not None
     if mesh.has_colour is not None:
         has_colours = bool(mesh.has_colour[skin.file_vertices].all())
     if has_colours and mesh.colours is not None:
         colours = mesh.colours[skin.file_vertices].astype(np.float64)
-        picture = drawn_over(picture, built_in, colours[skin.faces])
-    return built_in, picture, (known.wrinkles, known.segments, light)
-
-
-def _check_size(skin: SkinPiece) -> None:
-    """Raise AssetError if a vertex [mm] lies far away from the face."""
-    off = np.linalg.norm(skin.vertices, axis=1)
-    most_distance = 10_000.0  # [mm] from the centre of the face; more is a mistake
-    if off.max() > most_distance:
-        where = int(off.argmax())
-        raise AssetError(
-            f"vertex {skin.file_vertices[where]} lies {off[where] / 1000.0:.3g} m off the face; "
-            f"allowed are {most_distance / 1000.0:g} m: remove stray vertices and "
-            "everything that is not the head"
-        )
+        picture = drawn_over(picture, places.own, colours[skin.faces])
+    return places.own, picture, maps
 
 
 def _facing_outward(skin: SkinPiece) -> SkinPiece:

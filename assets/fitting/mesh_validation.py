@@ -51,6 +51,19 @@ class SkinPiece:
     is_turned: bool = False  # whether the file's triangles faced inward
 
 
+def check_size(skin: SkinPiece) -> None:
+    """Raise AssetError if a vertex [mm] lies far away from the face."""
+    off = np.linalg.norm(skin.vertices, axis=1)
+    most_distance = 10_000.0  # [mm] from the centre of the face; more is a mistake
+    if off.max() > most_distance:
+        where = int(off.argmax())
+        raise AssetError(
+            f"vertex {skin.file_vertices[where]} lies {off[where] / 1000.0:.3g} m off the face; "
+            f"allowed are {most_distance / 1000.0:g} m: remove stray vertices and "
+            "everything that is not the head"
+        )
+
+
 def skin_of(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> SkinPiece:
     """Return the piece of a mesh that has the landmarks; it lacks eyeballs and loose vertices.
 

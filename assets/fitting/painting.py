@@ -40,11 +40,13 @@ def spread_uv(
     warped: Floats64,
     nearest: SurfacePoints,
     skin: tuple[Floats64, Floats64, Integers32],
+    holds: Floats64 | float = 1.0,
 ) -> Floats32:
     """Find texture coordinates in the built-in texture for another head's vertices, (V, 2).
 
     warped: vertices of the built-in skin after the warp [mm], (n, 3). nearest: foot of each vertex
     on this skin. skin: the other head's vertices (V, 3) [mm], unit normals (V, 3) and faces (F, 3).
+    holds: factor on the force that holds a vertex at its foot, (V,) or a number.
     """
     vertices, normals, faces = skin
     feet = nearest.interpolate(warped)
@@ -78,7 +80,8 @@ def spread_uv(
     hold_range = 4.0, 12.0
     least_trust = 1e-6  # above 0, so that the system has a solution for every vertex
     hold = (
-        neighbour
+        holds
+        * neighbour
         * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
         * np.maximum(trust, least_trust)
     )
@@ -207,7 +210,7 @@ def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
 def drawn_over(
     picture: Image, layout: TextureLayout, colours: Floats64 | tuple[Image, TextureLayout]
 ) -> Image:
-    """Draw the triangles of a layout over a texture (H, W, 3), uint8.
+    """Draw the triangles of a layout over a texture (H, W, ...), uint8.
 
     colours: colour of each corner, 0 to 255, (F, 3, 3); or a pair of another texture and the layout
     of the triangles in this texture.
@@ -242,18 +245,57 @@ def maps_in(
     light = np.full((MAP_SIZE, MAP_SIZE), 255, np.uint8)
     light[texels.rows, texels.columns] = sampled(plain_skin(known)[1], place)
     found = sampled(known.wrinkles.map, place)
-    change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
-    slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
-    slope = np.einsum("nij,nj->ni", change, slope)
+    slope = _slopes_in(known, found, theirs, own, texels)
     steepest_percentile = 99.9  # [%] of slopes that are not clipped
     steepest = 1.0
     if len(slope):
         steepest = max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6)
     wrinkles = np.full((MAP_SIZE, MAP_SIZE, 4), (128, 128, 0, 0), np.uint8)
-    level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
+    level = _levels_of(slope, steepest)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
     light = np.asarray(PIL.Image.fromarray(light).resize(size[::-1]))
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
+
+
+def maps_over(
+    known: Head, theirs: TextureLayout, own: TextureLayout
+) -> tuple[Wrinkles, Image, Image]:
+    """Draw triangles of the built-in wrinkles, segments and ambient occlusion at other places.
+
+    theirs: layout of the triangles in the built-in maps. own: layout of the places where they are
+    drawn over the same maps.
+    """
+    light = plain_skin(known)[1]
+    segments = drawn_over(known.segments, own, (known.segments, theirs))
+    texels = texels_within(own, known.wrinkles.map.shape[:2])
+    found = sampled(known.wrinkles.map, texels.interpolate(theirs.corners))
+    level = _levels_of(_slopes_in(known, found, theirs, own, texels), known.wrinkles.steepest)
+    wrinkles = known.wrinkles.map.copy()
+    wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
+    return (
+        replace(known.wrinkles, map=wrinkles),
+        segments,
+        drawn_over(light, own, (light, theirs)),
+    )
+
+
+def _slopes_in(
+    known: Head, found: Unsigned8, theirs: TextureLayout, own: TextureLayout, texels: Texels
+) -> Floats64:
+    """Return slopes along u and v of the layout `own` at its texels, (n, 2).
+
+    found: texels of the built-in wrinkles there, (n, 4), with slopes along u and v of `theirs`.
+    """
+    change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
+    slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
+    changed: Floats64 = np.einsum("nij,nj->ni", change, slope)
+    return changed
+
+
+def _levels_of(slope: Floats64, steepest: float) -> Unsigned8:
+    """Return slopes as bytes of a map of wrinkles; 255 stands for the slope `steepest`."""
+    level: Unsigned8 = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
+    return level
 
 
 def _rates_at_corners(theirs: TextureLayout, own: TextureLayout) -> Floats64:
