@@ -150,7 +150,8 @@ def _around_fading(scene: Drawable) -> Integers64 | None:
     fade = scene.skin.fade
     if fade is None:
         return None
-    return np.unique(scene.faces[(fade[scene.faces, 0] < 1.0).any(axis=1)]).astype(np.int64)
+    fades = (fade[scene.faces, 0] < 1.0).any(axis=1)
+    return np.unique(scene.faces[fades]).astype(np.int64)
 
 
 def side_by_side(size: tuple[int, int], meshes: Sequence[DrawnMesh]) -> list[Viewport]:

@@ -155,7 +155,8 @@ class _Decompression:
         if self._buffers.has(view["buffer"]):
             return self._stored(view)
         decoder = _package("meshopt", name)
-        count, stride = packed["count"], packed["byteStride"]
+        count = packed["count"]
+        stride = packed["byteStride"]
         most_bytes = 400_000_000  # of all data: small files may contain endless zeros
         if min(count, stride) < 0 or len(self._plain) + count * stride > most_bytes:
             raise AssetError(

@@ -77,7 +77,8 @@ def _mixed(points: Floats64, places: Floats64, amounts: Floats64, blur: float) -
 
 def _sites(marks: Floats64) -> tuple[Floats64, Floats64]:
     """Return the places of sites, (n, 3) [mm], and their oil, (n,); marks: landmarks, (68, 3)."""
-    nasion, base = marks[27], marks[33]
+    nasion = marks[27]
+    base = marks[33]
     up = nasion - base
     brows = marks[[19, 24]].mean(axis=0)
     ears = marks[[0, 16]]

@@ -167,7 +167,7 @@ def search(
 def with_flipped_edge(start: CoarseLayout, first: int, second: int) -> CoarseLayout | None:
     """The layout with the edge between two vertices flipped; None if it must not be flipped."""
     triangles = start.triangles
-    beside = np.flatnonzero((triangles == first).any(axis=1) & (triangles == second).any(axis=1))
+    beside = np.flatnonzero(_triangles_with(triangles, first, second))
     if len(beside) != 2 or not np.isin(start.groups[beside], FREE_GROUPS).all():
         return None
     rows = [list(triangles[number]) for number in beside]
@@ -175,11 +175,18 @@ def with_flipped_edge(start: CoarseLayout, first: int, second: int) -> CoarseLay
         rows.reverse()
         beside = beside[::-1]
     ahead, behind = ((set(row) - {first, second}).pop() for row in rows)
-    if ((triangles == ahead).any(axis=1) & (triangles == behind).any(axis=1)).any():
+    if _triangles_with(triangles, ahead, behind).any():
         return None
     changed = triangles.copy()
     changed[beside] = [[ahead, first, behind], [ahead, behind, second]]
     return start._replace(triangles=changed)
+
+
+def _triangles_with(triangles: Integers32, first: int, second: int) -> Flags:
+    """Flags of the triangles (F, 3) that have both vertices."""
+    has_first = (triangles == first).any(axis=1)
+    has_second = (triangles == second).any(axis=1)
+    return np.asarray(has_first & has_second)
 
 
 def _is_sound(

@@ -294,7 +294,12 @@ def report(found: Sequence[RefineRow]) -> str:
         lines.append(f"kahler-gl: on {card} ({kind})")
     for mesh, group in groupby(found, key=lambda row: row.mesh):
         rows = list(group)
-        cells = [(*row[1:2], *row[3:], 1e6 * row[4] / max(row[3], 1.0)) for row in rows]
+        cells = []
+        for row in rows:
+            count = row.triangles_out
+            nanoseconds = 1e6 * row.milliseconds / max(count, 1.0)
+            times = (row.milliseconds, row.best_milliseconds, nanoseconds)
+            cells.append((row.method, count, *times))
         columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f"
         title = f"{mesh}, {rows[0].triangles_in} triangles"
         lines += ["", title, *table(columns, cells, indent="  ")]

@@ -94,8 +94,12 @@ def _mark_row(
     numbers, depths: padded rows, (3, width + 2). least: [steps of depth]. is_edge: 0 or 1,
     (width,); written.
     """
-    number_below, number_here, number_above = numbers[0], numbers[1], numbers[2]
-    below, here, above = depths[0], depths[1], depths[2]
+    number_below = numbers[0]
+    number_here = numbers[1]
+    number_above = numbers[2]
+    below = depths[0]
+    here = depths[1]
+    above = depths[2]
     most = np.int32(0.5 * _DEPTH_STEPS)
     for x in range(len(is_edge)):
         number = number_here[x + 1]
@@ -204,9 +208,12 @@ def _corner(corners: Floats64, vertex: int) -> _Corner:
 @njit
 def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
     """Return twice the area of a triangle before the camera; negative if its back shows."""
-    ax, ay = a[0] / a[3], a[1] / a[3]
-    abx, aby = b[0] / b[3] - ax, b[1] / b[3] - ay
-    acx, acy = c[0] / c[3] - ax, c[1] / c[3] - ay
+    ax = a[0] / a[3]
+    ay = a[1] / a[3]
+    abx = b[0] / b[3] - ax
+    aby = b[1] / b[3] - ay
+    acx = c[0] / c[3] - ax
+    acy = c[1] / c[3] - ay
     return abx * acy - acx * aby
 
 
@@ -221,8 +228,11 @@ def _span(
     """
     if min(a_depth, b_depth, c_depth) <= 0.0:
         return 0, count
-    a, b, c = a / a_depth, b / b_depth, c / c_depth
-    low, high = min(a, b, c), max(a, b, c)
+    a = a / a_depth
+    b = b / b_depth
+    c = c / c_depth
+    low = min(a, b, c)
+    high = max(a, b, c)
     if not (high >= 0.0 and low < count):  # also true for NaN
         return 0, 0
     return int(max(low, 0.0)), int(min(high + 1.0, count))
@@ -349,7 +359,8 @@ def mix(
         red = green = blue = opaque = 0
         for s in range(len(SAMPLE_POSITIONS)):
             best = 2.0
-            shown_x, shown_y = x, y
+            shown_x = x
+            shown_y = y
             for k in range(len(_NEIGHBOUR_OFFSETS)):
                 at_x = min(max(x + _NEIGHBOUR_OFFSETS[k, 0], 0), width - 1)
                 at_y = min(max(y + _NEIGHBOUR_OFFSETS[k, 1], 0), height - 1)
@@ -361,7 +372,8 @@ def mix(
                     break
                 if off < best:
                     best = off
-                    shown_x, shown_y = at_x, at_y
+                    shown_x = at_x
+                    shown_y = at_y
             red += colours[shown_y, shown_x, 0]
             green += colours[shown_y, shown_x, 1]
             blue += colours[shown_y, shown_x, 2]

@@ -101,7 +101,8 @@ def _lifted_eyes(
             highest = max(highest, lift.max(initial=0.0))
         cost = max(highest, good_lift) + lift_per_meeting * (meeting - own_meeting)
         if cost < least:
-            found, least = parts, cost
+            found = parts
+            least = cost
         if highest <= good_lift:
             break
     return found
@@ -159,7 +160,8 @@ def gaze_fractions_of(apertures: Floats64) -> Floats64:
     apertures: greatest opening of each eye at rest [rad], shape (eyes,). Lids that are shut at rest
     do not follow, because a look upward would open them.
     """
-    shut, narrow = 0.08, 0.16  # rad; 0.08 is a millimetre on a human ball
+    shut = 0.08  # [rad], a millimetre on a human ball
+    narrow = 0.16  # [rad]
     fraction: Floats64 = smoothstep((apertures - shut) / (narrow - shut))
     return fraction
 

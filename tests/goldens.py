@@ -27,7 +27,8 @@ FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit")
 SUFFIXES = {"gltf": "glb", "usd": "usdz", "vtkhdf": "vtkhdf", "arkit": "csv"}
 POSES = ("joy", "anger", "fear", "disgust", "surprise", "sadness", "kiss", "AU43=1", "jawOpen=1")
 CAMERAS = ("three-quarter", "profile", "top", "0,0,3")
-LARGEST_STEP, FEW_PIXELS = 2, 0.001  # steps of 255; share of all pixels
+LARGEST_STEP = 2  # steps of 255
+FEW_PIXELS = 0.001  # share of all pixels
 
 
 def commands() -> Iterator[tuple[str, list[str]]]:

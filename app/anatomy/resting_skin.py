@@ -39,7 +39,9 @@ class RestingSkin:
         normals = self.normals[near]
         off = np.einsum("...kc,...kc->...k", points[..., None, :] - self.x[near], normals)
         normal = unit_vectors(np.einsum("...k,...kc->...c", weight, normals))
-        return (weight * off).sum(axis=-1), normal, (weight * self._bone[near]).sum(axis=-1)
+        height = (weight * off).sum(axis=-1)
+        bone_depth = (weight * self._bone[near]).sum(axis=-1)
+        return height, normal, bone_depth
 
     def heights(self, points: Floats64, out: Floats64) -> Floats64:
         """Return the heights of points above the nearest triangles.

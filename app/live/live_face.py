@@ -146,7 +146,8 @@ class LiveFace(Receiver):
 
     def calibrate(self) -> None:
         """Take the face of the next half second as neutral."""
-        self._neutral, self._neutral_until = [], self._clock() + CALIBRATION_TIME
+        self._neutral = []
+        self._neutral_until = self._clock() + CALIBRATION_TIME
 
     def _end_calibration(self) -> None:
         """Take the median of each channel as neutral; a blink does not change a median."""

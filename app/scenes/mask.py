@@ -47,8 +47,9 @@ class Mask(FacePart):
         push = least
         for _ in range(40):  # the sheet forms a tent over pushed places
             around = np.pad(push, 1, mode="edge")
-            mean = around[:-2, 1:-1] + around[2:, 1:-1] + around[1:-1, :-2] + around[1:-1, 2:]
-            push = np.maximum(least, 0.25 * mean)
+            beside_rows = around[:-2, 1:-1] + around[2:, 1:-1]
+            four = beside_rows + around[1:-1, :-2] + around[1:-1, 2:]
+            push = np.maximum(least, 0.25 * four)
         away = push.reshape(-1, 1) * self._outward
         self.take_shape(moved + self._held * away[self._held_by])
 

@@ -87,7 +87,9 @@ class LikelyFace:
             right.append(off)
         found = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)[0]
         self._weights = self._weights + found[:count]
-        shift, turn, growth = found[count : count + 3], found[count + 3 : -1], found[-1]
+        shift = found[count : count + 3]
+        turn = found[count + 3 : -1]
+        growth = found[-1]
         rotation = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         self._move(Similarity(1.0 + float(growth), rotation, shift))
 

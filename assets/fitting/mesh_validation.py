@@ -319,8 +319,9 @@ def is_covered(corners: Floats64, point: Floats64) -> bool:
 
 def covering(corners: Floats64, point: Floats64) -> Flags:
     """Return flags of the triangles (F, 3, 3) that cover a point (3,) [mm], shape (F,)."""
-    edges = np.roll(corners, -1, axis=1) - corners
-    to = point - corners
-    turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
-    hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
-    return np.asarray(hit & (corners[:, :, 2].mean(axis=1) > point[2] - COVER_DEPTH))
+    edge_x, edge_y, _ = np.moveaxis(np.roll(corners, -1, axis=1) - corners, 2, 0)
+    to_x, to_y, _ = np.moveaxis(point - corners, 2, 0)
+    turn = edge_x * to_y - edge_y * to_x
+    is_hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
+    depth = corners[:, :, 2].mean(axis=1)
+    return np.asarray(is_hit & (depth > point[2] - COVER_DEPTH))

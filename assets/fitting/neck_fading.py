@@ -34,7 +34,8 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     if len(points) < 3:
         return None
     up = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][2]
-    up = up * np.sign(up[1]) if abs(up[1]) > 0.5 else np.array([0.0, 1.0, 0.0])
+    is_tilted = abs(up[1]) <= 0.5
+    up = np.array([0.0, 1.0, 0.0]) if is_tilted else up * np.sign(up[1])
     bottom = float((points @ up).max())
     full_height = 25.0  # [mm] above the neck's edge, at most half of the distance to the chin
     height = min(full_height, 0.5 * (float(chin @ up) - bottom))

@@ -96,7 +96,8 @@ def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     along = random.uniform(0.0, 1.0, count)
     across = 0.24 * random.normal(size=count)
     # Hairs are sparse at both ends.
-    kept = random.random(count) < np.interp(along, (0.0, 0.22, 0.7, 1.0), (0.3, 1.0, 1.0, 0.35))
+    share_at_ends = np.interp(along, (0.0, 0.22, 0.7, 1.0), (0.3, 1.0, 1.0, 0.35))
+    kept = random.random(count) < share_at_ends
     along = along[kept]
     across = np.clip(across[kept], -0.55, 0.55)
     x = first + (last - first) * along
@@ -108,12 +109,15 @@ def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     turn = np.radians(78.0) * np.exp(-along / 0.2) + np.radians(14.0)
     turn -= np.radians(38.0) * smooth_step(0.08, 0.45, along) * smooth_step(-0.15, 0.3, across)
     turn += (0.1 + 0.4 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=len(along))
-    bend = np.linspace(1.0, 0.35, SEGMENT_COUNT) * turn[:, None] + np.arctan(line(x, 1))[:, None]
+    slope = np.arctan(line(x, 1))
+    bend = np.linspace(1.0, 0.35, SEGMENT_COUNT) * turn[:, None] + slope[:, None]
     longest_hair = 6.5  # [mm]
     long = longest_hair * random.uniform(0.55, 1.0, len(along)) * (1.0 - 0.35 * along)
     long *= np.clip(brows.thickness / 7.0, 0.7, 1.15) * (1.0 + 0.3 * brows.unruly)
-    steps = np.stack([np.cos(bend), np.sin(bend)], axis=-1) * (long / SEGMENT_COUNT)[:, None, None]
-    start = np.stack([x, root], axis=-1)[:, None] - 0.3 * steps.sum(axis=1, keepdims=True)
+    directions = np.stack([np.cos(bend), np.sin(bend)], axis=-1)
+    steps = directions * (long / SEGMENT_COUNT)[:, None, None]
+    roots = np.stack([x, root], axis=-1)[:, None]
+    start = roots - 0.3 * steps.sum(axis=1, keepdims=True)
     return np.concatenate([start, start + np.cumsum(steps, axis=1)], axis=1)
 
 

@@ -153,7 +153,8 @@ def _line_regions(shrink: int) -> _Places:
     away = np.stack([beside, y, z], axis=2) - FAN_HUB
     level = np.hypot(away[..., 0], away[..., 2]) * np.sign(away[..., 0])
     up = away[..., 1] + 0.1 * level  # a fan sinks a little outward
-    radius, angle = np.hypot(level, up), np.arctan2(up, level)
+    radius = np.hypot(level, up)
+    angle = np.arctan2(up, level)
     fan = smooth_step(10.5, 13.0, radius) * smooth_step(36.0, 30.0, radius)
     fan *= smooth_step(-1.25, -0.85, angle) * smooth_step(0.75, 0.5, angle)
     fan *= smooth_step(1.2, 2.4, np.hypot(beside - 42.9, y + 0.2))

@@ -47,7 +47,9 @@ class FurrowLine(NamedTuple):
 def forehead_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random lines of the forehead; some are broken into two halves of unequal height."""
     x = _sample_coordinates(FOREHEAD_REACH)
-    lowest, highest = 36.5, 70.0  # [mm] above the root of the nose, along the skin
+    # [mm] above the root of the nose, along the skin.
+    lowest = 36.5
+    highest = 70.0
     spacing = (highest - lowest) / lines.forehead
     spread = min(spacing, 11.0)
     middle = 0.5 * (highest + lowest) + random.uniform(-0.5, 0.5) * (spacing - spread)
@@ -60,15 +62,12 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine
         place += 0.17 * spread * random.uniform(-1.0, 1.0)
         own = place + course + 0.45 * _random_curve(26.0, x, random)
         shown = _line_strength(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
-        whole = smooth_step(
-            0.0,
-            1.0,
-            1.0
-            - 0.45 * lines.broken
-            + (0.12 + 0.4 * lines.broken) * _random_curve(34.0, x, random),
-        )
-        ends = random.uniform(34.0, 54.0, 2)
-        reach = smooth_step(-ends[0], -ends[0] + 14.0, x) * smooth_step(ends[1], ends[1] - 14.0, x)
+        waves = (0.12 + 0.4 * lines.broken) * _random_curve(34.0, x, random)
+        whole = smooth_step(0.0, 1.0, 1.0 - 0.45 * lines.broken + waves)
+        right_end, left_end = random.uniform(34.0, 54.0, 2)  # [mm] from the midline
+        fading = 14.0  # [mm] over which a line fades at its ends
+        reach = smooth_step(-right_end, -right_end + fading, x)
+        reach = reach * smooth_step(left_end, left_end - fading, x)
         depth = deepest * random.uniform(0.65, 1.0) * whole * reach * shown
         if random.random() < 0.25 + 0.5 * lines.broken:
             gap = random.uniform(-20.0, 20.0)
@@ -83,7 +82,8 @@ def forehead_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine
         found += [FurrowLine(*part, width, 0.45 * min(spread, 9.0) + 0.4, 1.9) for part in parts]
     for _ in range(lines.fine * lines.forehead):
         own = random.uniform(lowest, highest) + course + 0.8 * _random_curve(20.0, x, random)
-        centre, half = random.uniform(-35.0, 35.0), random.uniform(7.0, 18.0)
+        centre = random.uniform(-35.0, 35.0)
+        half = random.uniform(7.0, 18.0)
         depth = 0.1 * lines.forehead_depth * smooth_step(half, 0.3 * half, np.abs(x - centre))
         found.append(FurrowLine(course=own, depth=depth, width=1.2, roll=1.8, swelling=0.2))
     return found
@@ -113,7 +113,8 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
             1.0 + 0.02 * (y - 18.0)
         )
         own += 0.45 * _random_curve(18.0, y, random)
-        low, high = random.uniform(8.0, 11.0), random.uniform(29.0, 37.0)
+        low = random.uniform(8.0, 11.0)
+        high = random.uniform(29.0, 37.0)
         ends = smooth_step(low, low + 9.0, y) * smooth_step(high, high - 16.0, y)
         factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
         depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _random_curve(14.0, y, random))

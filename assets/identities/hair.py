@@ -348,10 +348,10 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
         at = [(1.0 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
-    used, number = np.unique(
-        faces[(behind_hairline(uv) > 0.0)[faces].any(axis=1)], return_inverse=True
-    )
-    faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
+    has_hair = (behind_hairline(uv) > 0.0)[faces].any(axis=1)
+    used, number = np.unique(faces[has_hair], return_inverse=True)
+    normals = vertex_normals(vertices, faces)[used]
+    faces = number.reshape(-1, 3).astype(np.int32)
     points = vertices[used]
     uv = uv[used]
     covers = np.zeros(len(points))

@@ -25,7 +25,8 @@ def larynx_of(person: Person, size: int) -> Relief:
     x, y, _ = texels.interpolate(person.vertices[person.faces]).T
     throat = person.vertices[person.anatomy["cervicale"], 1]
     below = 15.0  # [mm] down from the angle between chin and neck
-    half_width, half_height = 6.5, 9.0  # [mm]
+    half_width = 6.5  # [mm]
+    half_height = 9.0  # [mm]
     notch = 0.25 * np.exp(-((x / 2.5) ** 2) - ((y - throat + below - 6.0) / 3.0) ** 2)
     ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)
     inside = smooth_step(0.02, 0.1, ridge)

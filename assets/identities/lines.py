@@ -79,7 +79,8 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
     count, feet, *deep = np.clip(random.normal(size=6), -2.0, 2.0).tolist()
     late = float(np.clip((age - 20.0) / 50.0, 0.0, 1.1))
     man = float(is_man)
-    whole, lower = 0.24 + 0.2 * late, 0.24 + 0.14 * man
+    whole = 0.24 + 0.2 * late
+    lower = 0.24 + 0.14 * man
     upper = 0.05
     fans = np.cumsum([whole, lower, upper])
     spreads = np.cumsum([0.51, 0.25])

@@ -191,7 +191,8 @@ def _growth_places(hair: Part, fringe: float, chances: Floats32) -> tuple[Intege
     weights *= 1.0 + 8.0 * upright
     ends = np.cumsum(weights)
     faces = np.searchsorted(ends, chances[:, 0] * ends[-1], side="right")
-    root, side = np.sqrt(chances[:, 1]), chances[:, 2]
+    root = np.sqrt(chances[:, 1])
+    side = chances[:, 2]
     barycentric = np.stack([1.0 - root, root * (1.0 - side), root * side], axis=1)
     return np.minimum(faces, len(weights) - 1), barycentric
 
@@ -199,7 +200,8 @@ def _growth_places(hair: Part, fringe: float, chances: Floats32) -> tuple[Intege
 def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
     """Evaluate a smooth field at points, about -1 to 1, (n, 1); pace: wave number [rad/mm]."""
     x, y, z = np.moveaxis(pace * places + np.float32(turn), 1, 0)
-    field = np.sin(x + 1.3 * np.sin(0.7 * z)) + np.sin(1.1 * y + z) + np.sin(0.9 * z - 0.8 * x)
+    bent_wave = np.sin(x + 1.3 * np.sin(0.7 * z))
+    field = bent_wave + np.sin(1.1 * y + z) + np.sin(0.9 * z - 0.8 * x)
     return np.asarray(0.5 * field[:, None], np.float32)
 
 

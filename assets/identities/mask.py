@@ -126,7 +126,8 @@ def _skin_below(person: Person, axis: Floats64, turn: Floats64, height: Floats64
     weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
     points = np.einsum("wk,fkc->fwc", weights, corners).reshape(-1, 3) - axis
     radius = 65.0  # [mm]; converts angles into lengths
-    there = np.column_stack([radius * np.arctan2(points[:, 0], points[:, 2]), points[:, 1]])
+    around = radius * np.arctan2(points[:, 0], points[:, 2])
+    there = np.column_stack([around, points[:, 1]])
     reach = np.hypot(points[:, 0], points[:, 2])
     places = np.column_stack([radius * turn.ravel(), height.ravel()])
     near = scipy.spatial.cKDTree(there).query_ball_point(places, 2.5)

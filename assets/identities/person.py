@@ -164,7 +164,8 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     """
     jaw_slope = 0.35  # slope of the lower jaw's edge, which rises to the back
     jaw_depth = 20.0  # [mm]; z at which this edge ends
-    below = chin[1] - points[:, 1:2] + jaw_slope * (chin[2] - np.maximum(points[:, 2:], jaw_depth))
+    behind_chin = chin[2] - np.maximum(points[:, 2:], jaw_depth)
+    below = chin[1] - points[:, 1:2] + jaw_slope * behind_chin
     # Necks measure 330 mm around in women and 398 mm in men (Gordon and others 2014, ANSUR II).
     narrowing = 0.17
     fade_height = 30.0  # [mm] below the jaw over which narrowing begins
@@ -246,8 +247,9 @@ def _named_vertices(known: Head) -> Integers32:
 def _eye(known: Head, eye: Eye, vertices: Floats64) -> Eye:
     """Place an eyeball behind its lids; its size varies less than the opening of the lids."""
     corners = known.landmarks[EYE_LANDMARK_RANGES[eye.name]][[0, 3]]
-    before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
-    scale = float(np.sqrt(now / before))
+    known_width = np.linalg.norm(np.diff(known.vertices[corners], axis=0))
+    width = np.linalg.norm(np.diff(vertices[corners], axis=0))
+    scale = float(np.sqrt(width / known_width))
     lids = known.rings[f"eye_1_{eye.name}"]
     behind = eye.centre - known.vertices[lids].mean(axis=0)
     centre = vertices[lids].mean(axis=0) + scale * behind

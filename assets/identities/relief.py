@@ -29,7 +29,8 @@ class Relief(NamedTuple):
 
 def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:
     """Make a relief of n texels; heights [mm] and light (0 to 1) of each texel, (n,)."""
-    top, left = texels.rows.min(), texels.columns.min()
+    top = texels.rows.min()
+    left = texels.columns.min()
     rows = slice(int(top), int(texels.rows.max()) + 1)
     columns = slice(int(left), int(texels.columns.max()) + 1)
     shape = rows.stop - rows.start, columns.stop - columns.start

@@ -127,11 +127,11 @@ def _shirt_with_wings(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cl
     out = surface.outward(columns, np.full_like(columns, 8.0))
     bulge = 4.0 * (down * (1.0 - down))[..., None] + 1.2
     outer = fold + lift + down[..., None] * (hem - fold - lift) + bulge * out
-    within = [np.full((1, columns.shape[1]), 1.0), np.full((1, columns.shape[1]), 5.0)]
-    roots = [surface.down(columns[:1], each) for each in within]
+    upper_edge = columns[:1]
+    shallow, deep = (surface.down(upper_edge, np.full_like(upper_edge, d)) for d in (1.0, 5.0))
     thickness = 1.3  # [mm]
     inner = outer - thickness * _surface_of(outer).normals.reshape(outer.shape)
-    rows = np.vstack([roots[1], roots[0] + 0.6 * lift, outer[:1]])
+    rows = np.vstack([deep, shallow + 0.6 * lift, outer[:1]])
     seam = np.minimum(1.0 - down, 1.2 * np.minimum(along, 1.0 - along))
     shades = 1.03 - 0.12 * (np.abs(seam - 0.1) < 0.03)
     plain = _unshaded_colour(shirt, colour)
@@ -152,8 +152,8 @@ def _button_strip(surface: _Surface, colour: Floats64) -> list[_Cloth]:
     light = 0.35 * colour + 0.6
     turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     for depth in (8.0, 76.0, 152.0):
-        centre = surface.down(np.zeros((1, 1)), np.full((1, 1), depth))[0, 0]
-        below = surface.down(np.zeros((1, 1)), np.full((1, 1), depth + 6.0))[0, 0]
+        midline = np.zeros((2, 1))
+        centre, below = surface.down(midline, np.array([[depth], [depth + 6.0]]))[:, 0]
         slope = (centre - below) / np.linalg.norm(centre - below)
         out = np.cross([1.0, 0.0, 0.0], slope)
         around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
@@ -268,7 +268,8 @@ def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
     clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm]; more at the back, where heads bend
     apart = skin - axis
     radius = 60.0  # [mm]; converts angles into lengths
-    places = np.column_stack([radius * np.arctan2(apart[:, 0], apart[:, 2]), skin[:, 1]])
+    around = radius * np.arctan2(apart[:, 0], apart[:, 2])
+    places = np.column_stack([around, skin[:, 1]])
     neck = skin[:, 1] < points[:, 1].max() + 8.0
     out = points - axis
     turn = radius * np.arctan2(out[:, 0], out[:, 2])

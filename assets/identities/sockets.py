@@ -57,7 +57,8 @@ def _sockets() -> _Sockets:
     head = load("head")
     inner_count = 6  # points in the inner half of a lid's row; the outer half is a hood
     stiffness = 0.015  # weight of squared displacements [rad²/mm²], chosen by eye
-    edges, wings = [], []
+    edges = []
+    wings = []
     corners: dict[tuple[int, int], list[int]] = {}  # edge -> opposite corners of its triangles
     for a, b, c in head.faces.tolist():
         for first, second, wing in ((a, b, c), (b, c, a), (c, a, b)):
@@ -90,7 +91,8 @@ def _hinge(x: Floats64, edge: tuple[int, int], wings: list[int]) -> Floats64:
     weights = np.zeros(len(x))
     for wing in wings:
         for near, far in ((a, b), (b, a)):
-            along, off = x[far] - x[near], x[wing] - x[near]
+            along = x[far] - x[near]
+            off = x[wing] - x[near]
             twice = float(np.linalg.norm(np.cross(along, off)))
             cotangent = along @ off / twice
             weights[far] += cotangent

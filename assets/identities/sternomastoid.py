@@ -70,7 +70,8 @@ def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)
     inside *= smooth_step(-24.0, -14.0, off) * smooth_step(-158.0, -148.0, y)
     kept = inside * (belly + np.abs(tendon - hollow)) > 2e-3
-    rows, columns = texels.rows[kept], texels.columns[kept]
+    rows = texels.rows[kept]
+    columns = texels.columns[kept]
     texels = Texels(rows, columns, texels.faces[kept], texels.weights[kept])
     light = np.ones(len(rows))
     raised = (inside * each for each in (belly, tendon - hollow))

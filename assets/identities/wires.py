@@ -82,7 +82,11 @@ def sheet(outer: Floats64, inner: Floats64) -> Tube:
     """
     numbers = np.arange(outer[..., 0].size).reshape(outer.shape[:2])
     count = numbers.size
-    edge = np.concatenate([numbers[0], numbers[1:, -1], numbers[-1, -2::-1], numbers[-2:0:-1, 0]])
+    upper = numbers[0]
+    right = numbers[1:, -1]
+    lower = numbers[-1, -2::-1]
+    left = numbers[-2:0:-1, 0]
+    edge = np.concatenate([upper, right, lower, left])
     rim = grid_faces(np.stack([edge + count, edge]), closed=True)
     sides = [grid_faces(numbers), grid_faces(numbers)[:, ::-1] + count, rim]
     points = np.vstack([outer.reshape(-1, 3), inner.reshape(-1, 3)])

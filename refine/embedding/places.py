@@ -33,7 +33,8 @@ another part of the surface.
 """
 ROUNDING_LIMIT = 1e-14
 """Steps in barycentric coordinates, and squared sines of angles, below this count as zero."""
-INSIDE_RESULT, STUCK_RESULT = 3, 4
+INSIDE_RESULT = 3
+STUCK_RESULT = 4
 """Results of a step that does not cross the edge opposite of corner 0, 1 or 2."""
 UPRIGHT_SINE = 1e-12
 """Largest part of the vector to the point across the normal, relative to its length."""
@@ -158,7 +159,9 @@ def linearise(
 
     `columns`: decrease of this part with each barycentric coordinate, rows of (3, 3), written.
     """
-    u, v, w = place[0], place[1], place[2]
+    u = place[0]
+    v = place[1]
+    w = place[2]
     away = less(point, 1.0, place_on(rows, t, u, v, w))
     mean = 0.0, 0.0, 0.0
     for i in range(3):

@@ -94,7 +94,9 @@ def compose(
         for channel in range(3):
             hair = hairs.light[channel]
             to_grey = hairs.grey_light[channel] - hair
-            lit, kept, before = light[channel, row], left[channel, y], former[row]
+            lit = light[channel, row]
+            kept = left[channel, y]
+            before = former[row]
             bare = skin[channel]
             for x in range(width):
                 own = hair + grey[x] * to_grey
@@ -120,7 +122,8 @@ def _hair_of_row(
 ) -> None:
     """Write for a row of texels: fractions of hair, grey and modelled hair, and the light."""
     one = np.float32(1.0)
-    kept, scalp = hairs.kept[row], hairs.scalp[row]
+    kept = hairs.kept[row]
+    scalp = hairs.scalp[row]
     for x in range(len(haired)):
         on_scalp = scalp[x] > np.float32(0.01)
         grey[x] = hairs.grey[0] if on_scalp else hairs.grey[1]
@@ -129,7 +132,8 @@ def _hair_of_row(
         covered[:] = np.float32(0.0)
         shaded[:] = one
         return
-    cover, single = grown.covered[row], grown.hairs[row]
+    cover = grown.covered[row]
+    single = grown.hairs[row]
     for x in range(len(haired)):
         within = kept[x]
         haired[x] = np.float32(0.0) if scalp[x] > np.float32(0.01) else within

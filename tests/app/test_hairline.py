@@ -134,5 +134,6 @@ def test_halves_of_parted_hair_meet_softly():
     with Capture(FaceScene(person_called(9)), options) as capture:
         capture.camera.target = np.array([0.0, 90.0, 30.0])
         light = capture.draw_image().astype(float).mean(axis=2)[150:270].mean(axis=0)
-    beside, other = light[228:236].mean(), light[244:252].mean()
+    beside = light[228:236].mean()
+    other = light[244:252].mean()
     assert beside / other < 1.2

@@ -34,7 +34,8 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     depth = rest.vertices[:, 2].max() - rest.vertices[:, 2]
     rows = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] > 0.7)
     beside = np.abs(rest.vertices[:, 0])
-    groove, coat = (rows & (beside < 1.0)), (rows & (beside > 3.0) & (beside < 8.0))
+    groove = rows & (beside < 1.0)
+    coat = rows & (beside > 3.0) & (beside < 8.0)
     assert tongue.colours[groove].mean() < 0.88 * tongue.colours[coat].mean()
     edge = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] < 0.2)
     redness = [

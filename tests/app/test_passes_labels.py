@@ -29,7 +29,8 @@ def camera_at(yaw, pitch):
 @given(size=PICTURE_SIZES, **CAMERA_ANGLES)
 def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
     """K, R and t agree with the shaders' matrices; pixels count from the upper left corner."""
-    camera, (width, height) = camera_at(yaw, pitch), size
+    camera = camera_at(yaw, pitch)
+    width, height = size
     points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
     labels = CameraLabels.from_camera(camera, size)
     matrix = np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(width / height))

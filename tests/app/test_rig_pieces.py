@@ -156,7 +156,8 @@ def test_single_teeth_belong_to_their_row(face):
     """Lower molars that stand above the gap between the built-in rows are still lower teeth."""
     rows = {name: Maker(face).part(name)[0] for name in ("teeth_upper", "teeth_lower")}
     front = rows["teeth_upper"][:, 2].max()
-    teeth, roles = [], []
+    teeth = []
+    roles = []
     for name, side in (("teeth_upper", 1.0), ("teeth_lower", -1.0)):
         edge = rows[name][:, 1].min() if side > 0.0 else rows[name][:, 1].max()
         for along in np.linspace(-1.0, 1.0, 10):

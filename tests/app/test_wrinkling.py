@@ -143,7 +143,8 @@ def test_a_shut_lid_loses_the_shade_of_its_fold(scene, wrinkling):
     lids = np.concatenate([load("head").rings[f"eye_3_{side}"][3:8] for side in ("left", "right")])
     assert amounts(scene, wrinkling, blink=1.0)[lids].max() < -0.8
     with Capture(scene, CaptureOptions((480, 480), camera="0,0,2")) as capture:
-        view, projection = capture.camera.view_matrix(), capture.camera.projection_matrix(1.0)
+        view = capture.camera.view_matrix()
+        projection = capture.camera.projection_matrix(1.0)
         matrix = np.array(view) @ np.array(projection)
         places = scene.positions[lids] @ matrix[:3] + matrix[3]
         across, down = (240.0 * (1.0 + places[:, :2] / places[:, 3:] * (1.0, -1.0))).astype(int).T

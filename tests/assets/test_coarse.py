@@ -77,7 +77,8 @@ def test_roots_of_lashes_lie_below_the_edge_of_the_lid(coarse, head):
     steps = np.linspace(0.0, 1.0, 30)
     shares = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b <= 1.0])
     places = shares @ coarse.uv[coarse.faces[is_front]]
-    rows, columns = ((1.0 - places[..., 1]), places[..., 0])
+    rows = 1.0 - places[..., 1]
+    columns = places[..., 0]
     dark = roots[(rows * len(roots)).astype(int), (columns * len(roots)).astype(int)]
     assert len(dark) >= 12
     assert dark.mean(axis=1).max() < 0.06

@@ -349,7 +349,8 @@ def test_triangles_that_name_a_vertex_twice_are_left_away(other, fitted):
 
     The skin is the same without them.
     """
-    vertices, faces = other.mesh.vertices, other.mesh.faces
+    vertices = other.mesh.vertices
+    faces = other.mesh.faces
     alone = len(vertices)  # a vertex with no other triangle
     flat = np.array([[5, 6, 5], [7, 7, 7], [9, alone, alone]], np.int32)
     mesh = Mesh(np.vstack([vertices, vertices[9:10]]), np.vstack([faces[:9], flat, faces[9:]]))

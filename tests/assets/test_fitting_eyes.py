@@ -22,7 +22,8 @@ from tests.meshes import ball
 
 Array = npt.NDArray[np.float64]
 EYE_DISTANCE = 25.0  # [mm] around an eye, for the eye's parts
-SIDES, RINGS = 3, 30  # samples along each edge of the rim, and from the middle to the rim
+SIDES = 3  # samples along each edge of the rim
+RINGS = 30  # samples from the middle to the rim
 
 
 @pytest.fixture(scope="module")

@@ -49,7 +49,8 @@ def test_no_ridge_runs_down_from_the_inner_brow(side):
     edge = np.array([769, 571])  # vertices of the right brow and lid, and their neighbours
     beside = np.array([570, 742])
     if side == "left":
-        edge, beside = head.mirror[edge], head.mirror[beside]
+        edge = head.mirror[edge]
+        beside = head.mirror[beside]
     brow, lid = person.vertices[edge]
     along = unit_vectors(brow - lid)
     sides = person.vertices[beside] - lid

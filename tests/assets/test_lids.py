@@ -62,7 +62,8 @@ def test_hooding_lowers_the_outer_half_alone(person):
         fold_of(folded(person, seen_lid=1.5, hooding=h), "left", 1280).light for h in (0.0, 3.0)
     )
     half = plain.shape[1] // 3
-    inner, outer = slice(None, half), slice(-half, None)
+    inner = slice(None, half)
+    outer = slice(-half, None)
     assert (plain[:, inner] == hooded[:, inner]).mean() > 0.95
     assert plain[:, outer].min() < 0.6
     assert hooded[:, outer].min() > plain[:, outer].min() + 0.1

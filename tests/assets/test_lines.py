@@ -171,7 +171,8 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
 
     The smallest maps are shared between persons.
     """
-    whole, half = drawn(), drawn(2)
+    whole = drawn()
+    half = drawn(2)
     assert half.shape == (640, 640, 4)
     means = whole.reshape(640, 2, 640, 2, 4).mean(axis=(1, 3))
     assert np.abs(means - half)[..., :3].mean() < 0.1

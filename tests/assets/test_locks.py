@@ -40,7 +40,8 @@ def test_locks_are_sound_ribbons(growth):
         assert each.dtype == np.float32
         assert np.isfinite(each).all()
     assert 0.0 <= locks.colours.min() <= locks.colours.max() <= 1.0
-    along, half = locks.striation[:, :3], locks.striation[:, 3:4]
+    along = locks.striation[:, :3]
+    half = locks.striation[:, 3:4]
     middles = locks.vertices - half * np.cross(locks.normals, along)
     rows = middles.reshape(growth.count, VERTEX_COUNT, 3)
     assert rows[:, 0:-1:2] == pytest.approx(rows[:, 1::2], abs=1e-4)
@@ -128,7 +129,8 @@ def test_tied_hair_is_seen_from_the_front(name, least):
         tied = next(part for part in scene.head.parts if part.name == "hair_tied")
         seen = pixels_of(capture.camera, tied.vertices, 300)
     box = np.zeros_like(is_hair)
-    (left, top), (right, bottom) = seen.min(axis=0), seen.max(axis=0)
+    left, top = seen.min(axis=0)
+    right, bottom = seen.max(axis=0)
     box[max(top, 0) : bottom + 1, max(left, 0) : right + 1] = True
     assert (is_hair & box).sum() > least
 

@@ -13,10 +13,9 @@ from risorius.assets.model import Head
 from tests.assets.gltf_files import GltfMaker
 from tests.assets.test_gltf import material, png
 
-UPPER_LIP_LANDMARKS, LOWER_LIP_LANDMARKS = (
-    [61, 62, 63],
-    [67, 66, 65],
-)  # landmarks in the middle of the inner lips
+# Landmarks in the middle of the inner lips.
+UPPER_LIP_LANDMARKS = [61, 62, 63]
+LOWER_LIP_LANDMARKS = [67, 66, 65]
 
 
 @pytest.fixture(scope="module")

@@ -54,7 +54,9 @@ def test_named_points_have_the_class_of_their_region(head, place):
 
 def test_lips_ears_and_lids_follow_their_rows(head):
     """The red has the class of its lip, and the mouth begins behind it; the helix is ear."""
-    upper, lower = slice(1, 5), slice(10, 14)  # without corners and middle
+    # Without corners and middle.
+    upper = slice(1, 5)
+    lower = slice(10, 14)
     for row in (3, 4):
         ring = head.rings[f"mouth_{row}_left"]
         assert set(at(head, ring[upper])) == {Segment.TOP_LIP}

@@ -36,7 +36,8 @@ def test_smiles_change_two_rows_within_their_limits():
 def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
     """A smile with lifted lips bares more teeth in joy; AU12 alone does not part the lips."""
     identity = sample_identity(110)
-    heights, slits = [], []
+    heights = []
+    slits = []
     for lift in (0.0, 1.0):
         person = make_person(replace(identity, smile=Smile(lift=lift)))
         simulation = sim.create(person)

@@ -19,7 +19,8 @@ def in_whole_arrays(absorbed, light, skin, former, hairs, grown, table):
         haired = np.where(on_scalp, np.float32(0.0), haired)
         shaded = 1.0 - (1.0 - grown.root_light) * grown.covered
         covered = grown.covered + grown.hairs * grown.covered * (grown.most - grown.covered)
-    amounts, maps = absorbed.amounts, absorbed.maps
+    amounts = absorbed.amounts
+    maps = absorbed.maps
     for channel in range(3):
         lost = amounts[0][channel] * maps[0] + amounts[1][channel] * maps[1]
         lost -= absorbed.relief * absorbed.detail

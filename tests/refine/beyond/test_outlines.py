@@ -20,7 +20,8 @@ def pit():
     angles = np.linspace(0.0, 2.0 * np.pi, POINT_COUNT, endpoint=False)
     ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(POINT_COUNT)])
     vertices = np.vstack([ring, 2.0 * ring, 0.9 * ring - [0.0, 0.0, 1.0]])
-    near, far = np.arange(POINT_COUNT), (np.arange(POINT_COUNT) + 1) % POINT_COUNT
+    near = np.arange(POINT_COUNT)
+    far = (np.arange(POINT_COUNT) + 1) % POINT_COUNT
     faces = [
         np.column_stack(each)
         for each in (
@@ -37,7 +38,8 @@ def radii_between(refiner, positions, rim):
     """Distances from the rim's middle of the middles of its edges, of curves and of chords."""
     mesh = refiner.refine(positions)
     edges = np.sort(refiner.edges, axis=1).tolist()
-    curves, chords = [], []
+    curves = []
+    chords = []
     middle = positions[rim].mean(axis=0)
     for a, b in pairwise(rim[1:]):
         assert refiner.splits[edges.index(sorted((a, b)))] > 0
