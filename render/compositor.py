@@ -90,7 +90,7 @@ class Compositor:
         Enlargement mixes the outermost pixels of the area with black pixels beside it.
         """
         width, height = self.size
-        for strip, (x, y) in _borders(area, self.size, picture.size[0] / width):
+        for strip, (x, y) in _inner_border_strips(area, self.size, picture.size[0] / width):
             self._gl.scissor = strip
             self._gl.viewport = x, y, width, height
             self._draw(picture)
@@ -160,7 +160,7 @@ class Compositor:
         return bytes(self.frame.read(components=3, alignment=1))
 
 
-def _borders(
+def _inner_border_strips(
     area: Rectangle, size: tuple[int, int], scale: float
 ) -> Iterator[tuple[Rectangle, tuple[int, int]]]:
     """Yield strips [pixels] inside the borders of an area that are not borders of the frame.
@@ -170,13 +170,15 @@ def _borders(
     if scale == 1.0:
         return
     depth = math.ceil(0.5 / scale)  # as far as an enlarged pixel is mixed with the next one
-    for x, width, right in _bands(area[0], area[2], size[0], depth):
-        for y, height, up in _bands(area[1], area[3], size[1], depth):
+    for x, width, right in _bands_with_motion(area[0], area[2], size[0], depth):
+        for y, height, up in _bands_with_motion(area[1], area[3], size[1], depth):
             if min(width, height) > 0 and (right or up):
                 yield (x, y, width, height), (right, up)
 
 
-def _bands(start: int, length: int, frame: int, depth: int) -> tuple[tuple[int, int, int], ...]:
+def _bands_with_motion(
+    start: int, length: int, frame: int, depth: int
+) -> tuple[tuple[int, int, int], ...]:
     """Return first pixel, number of pixels and motion of an area's two borders and its middle."""
     before = depth if start > 0 else 0
     after = depth if start + length < frame else 0

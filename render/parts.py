@@ -70,13 +70,13 @@ class PartBuffers:
         self._hiding = self._indices, 0
         if self._way is not None and part.striation is not None:
             least = part.striation[:, 5][part.faces].min(axis=1)
-            self._throwing = _chosen(gl, part.faces[least > SHADING_DENSITY])
+            self._throwing = _index_buffer(gl, part.faces[least > SHADING_DENSITY])
             # The inner side of hanging hair and flat hair do not hide the surface below.
             a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
             outward = unit_vectors(np.cross(b - a, c - a))[:, None]
             rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
             is_hiding = (least >= HIDING_DENSITY) & (rise > LEAST_RISE)
-            self._hiding = _chosen(gl, part.faces[is_hiding])
+            self._hiding = _index_buffer(gl, part.faces[is_hiding])
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self, placed: PlacedPart) -> None:
@@ -144,7 +144,7 @@ class PartBuffers:
                 self.draw(program, layers=count)
 
 
-def _chosen(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, int]:
+def _index_buffer(gl: moderngl.Context, faces: Integers32) -> tuple[moderngl.Buffer, int]:
     """Return an index buffer of faces (m, 3), and the number of faces."""
     indices = np.ascontiguousarray(faces, np.uint32)
     return gl.buffer(indices.tobytes() or bytes(12)), len(indices)

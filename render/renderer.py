@@ -240,7 +240,7 @@ class Renderer:
             """Return the groups of triangles, with programs that have these defines."""
             return [
                 (self._skin_program(frame, view, maps, shadow, defines), group)
-                for group, maps in _groups(skin, style)
+                for group, maps in _groups_with_maps(skin, style)
             ]
 
         if frame.is_opened:
@@ -383,7 +383,7 @@ def _kind_of(placed: PlacedBuffers, style: Style) -> tuple[str, tuple[str, ...]]
     return kind, opening.defines
 
 
-def _groups(skin: Skin, style: Style) -> list[tuple[TriangleGroup, dict[BumpMap, float]]]:
+def _groups_with_maps(skin: Skin, style: Style) -> list[tuple[TriangleGroup, dict[BumpMap, float]]]:
     """Return pairs of a share of the triangles, and the maps with which it is drawn.
 
     Triangles that are coloured by values are drawn together, because values have their order.

@@ -164,17 +164,17 @@ def _rasterise_side(
         a = _corner(corners, triangles[t, 0])
         b = _corner(corners, triangles[t, 1])
         c = _corner(corners, triangles[t, 2])
-        if min(a[3], b[3], c[3]) > 0.0 and sign * _turn(a, b, c) <= 0.0:
+        if min(a[3], b[3], c[3]) > 0.0 and sign * _doubled_area(a, b, c) <= 0.0:
             continue
-        left, right = _span(a[0], b[0], c[0], a[3], b[3], c[3], width)
-        bottom, top = _span(a[1], b[1], c[1], a[3], b[3], c[3], height)
+        left, right = _touched_pixels(a[0], b[0], c[0], a[3], b[3], c[3], width)
+        bottom, top = _touched_pixels(a[1], b[1], c[1], a[3], b[3], c[3], height)
         if not _has_any(before, left, right, bottom, top):
             continue
-        edges = _edge(b, c), _edge(c, a), _edge(a, b)
+        edges = _edge_function(b, c), _edge_function(c, a), _edge_function(a, b)
         volume = edges[0][0] * a[0] + edges[0][1] * a[1] + edges[0][2] * a[3]
         if not sign * volume > 0.0:
             continue
-        plane = _plane((a, b, c), edges, 1.0 / volume)
+        plane = _depth_plane((a, b, c), edges, 1.0 / volume)
         slack = 0.5 * (abs(plane[0]) + abs(plane[1]))
         for y in range(bottom, top):
             for n in range(before[y, left], before[y, right]):
@@ -191,8 +191,8 @@ def _rasterise_side(
                         continue
                     if number < 0.0:
                         # Drivers evaluate the number at the pixel's centre, for all its samples.
-                        one, two = _mean(values, triangles, t, edges, x + 0.5, y + 0.5)
-                        number = _number(kind, numbers, is_front, t, one, two)
+                        one, two = _interpolated_pair(values, triangles, t, edges, x + 0.5, y + 0.5)
+                        number = _surface_number(kind, numbers, is_front, t, one, two)
                         if number < 0.0:
                             break
                     depths[n, s] = depth
@@ -206,7 +206,7 @@ def _corner(corners: Floats64, vertex: int) -> _Corner:
 
 
 @njit
-def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
+def _doubled_area(a: _Corner, b: _Corner, c: _Corner) -> float:
     """Return twice the area of a triangle before the camera; negative if its back shows."""
     ax = a[0] / a[3]
     ay = a[1] / a[3]
@@ -218,7 +218,7 @@ def _turn(a: _Corner, b: _Corner, c: _Corner) -> float:
 
 
 @njit
-def _span(
+def _touched_pixels(
     a: float, b: float, c: float, a_depth: float, b_depth: float, c_depth: float, count: int
 ) -> tuple[int, int]:
     """Return the pixels along an axis that a triangle may touch: first, and one past the last.
@@ -248,7 +248,7 @@ def _has_any(before: Integers32, left: int, right: int, bottom: int, top: int) -
 
 
 @njit
-def _edge(a: _Corner, b: _Corner) -> _Linear:
+def _edge_function(a: _Corner, b: _Corner) -> _Linear:
     """Return the edge function from a to b, 0 on the edge; from b to a it is exactly negated."""
     x = a[1] * b[3] - b[1] * a[3]
     y = a[3] * b[0] - b[3] * a[0]
@@ -262,7 +262,7 @@ def _at(edge: _Linear, x: float, y: float) -> float:
 
 
 @njit
-def _plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: float) -> _Linear:
+def _depth_plane(corners: tuple[_Corner, _Corner, _Corner], edges: _Edges, scale: float) -> _Linear:
     """Return the depth on a triangle as a linear function of x and y; scale: 1 / its volume."""
     x = y = rest = 0.0
     for k in range(3):
@@ -297,7 +297,7 @@ def _is_inside(edges: _Edges, sign: float, x: float, y: float) -> bool:
 
 
 @njit
-def _mean(
+def _interpolated_pair(
     values: Floats64, triangles: Integers32, triangle: int, edges: _Edges, x: float, y: float
 ) -> tuple[float, float]:
     """Interpolate the two values of a triangle's corners at a point."""
@@ -311,7 +311,7 @@ def _mean(
 
 
 @njit
-def _number(
+def _surface_number(
     kind: int,
     numbers: tuple[float, float, float],
     is_front: bool,

@@ -58,7 +58,7 @@ class SampleMixer:
         """Smooth the edges of drawn surfaces; areas: rectangles that contain all of them."""
         gl = self._gl
         area = around(areas)
-        bands = _bands(areas)
+        bands = _bands_around(areas)
         self.target.surfaces.use(_TEXTURE_UNITS["surfaces"])
         self._found.use()
         gl.scissor = None
@@ -97,7 +97,7 @@ class SampleMixer:
             shaded.render(moderngl.TRIANGLES, vertices=3)
 
 
-def _bands(areas: Sequence[Rectangle]) -> list[Rectangle]:
+def _bands_around(areas: Sequence[Rectangle]) -> list[Rectangle]:
     """Return horizontal bands that contain all areas, each as wide as the areas in it.
 
     So wide shoulders do not widen the bands of the head.

@@ -73,7 +73,7 @@ class ShadowMap:
     ) -> Shadow:
         """Draw the shadow of some parts of a frame, and of its skin if `with_skin` is set."""
         gl = self._gl
-        view_to_light = _view_to_light(view, _basis(np.array(frame.style.light.to_key)))
+        view_to_light = _view_to_light(view, _light_axes(np.array(frame.style.light.to_key)))
         to_light = view.world_to_view @ view_to_light
         self._target.use()
         gl.viewport = (0, 0, MAP_RESOLUTION, MAP_RESOLUTION)
@@ -89,7 +89,7 @@ class ShadowMap:
 
 
 def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
-    """Return the matrix from view space to the light's clip space; basis: see `_basis`."""
+    """Return the matrix from view space to the light's clip space; basis: see `_light_axes`."""
     camera = view.camera
     centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
     matrix = np.eye(4)
@@ -98,7 +98,7 @@ def _view_to_light(view: PlacedView, basis: Floats64) -> Floats64:
     return matrix
 
 
-def _basis(toward: Floats64) -> Floats64:
+def _light_axes(toward: Floats64) -> Floats64:
     """Return the axes of a camera at the light as rows, (3, 3): right, up, away from the light.
 
     toward: direction to the light, (3,).

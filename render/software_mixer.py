@@ -59,7 +59,7 @@ class SoftwareMixer:
         seen = np.zeros_like(depths)
         to_area = _clip_to(area, view)
         with np.errstate(all="ignore"):  # triangles with infinite corners are not drawn
-            for surface in _surfaces(drawn, view):
+            for surface in _visible_surfaces(drawn, view):
                 placed = surface._replace(corners=surface.corners @ to_area)
                 rasterise(*placed, pixels, depths, seen)
         least, scale = view.depth_range
@@ -76,7 +76,7 @@ def _clip_to(area: Rectangle, view: PlacedView) -> Floats64:
     return matrix
 
 
-def _surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
+def _visible_surfaces(drawn: Drawn, view: PlacedView) -> Iterator[_Surface]:
     """Yield all surfaces that samples may see, in the order of coverage.py."""
     if drawn.skin is not None:
         yield _skin_surface(drawn, drawn.skin, view)
@@ -98,7 +98,7 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
         cut = np.array(drawn.cut or NO_CUT)
         values[:, 1] = rows[:, :3] @ cut[:3] + cut[3]
     kind = TRIANGLE_KIND if drawn.has_triangles else SURFACE_KIND
-    clip = _moved(rows[:, :3], view.world_to_clip)
+    clip = _multiplied(rows[:, :3], view.world_to_clip)
     return _Surface(
         corners=clip,
         values=values,
@@ -112,13 +112,13 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
 def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
     """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
     model_view = placed.part.transform.T @ view.world_to_view
-    positions = _moved(placed.part.vertices, model_view)[:, :3]
-    clip = _moved(positions, view.projection)
+    positions = _multiplied(placed.part.vertices, model_view)[:, :3]
+    clip = _multiplied(positions, view.projection)
     if cut is not None:
         plane = np.array(in_view(cut, view))
         most = SUNK_DEPTH * view.camera.scene_radius
         beyond = np.clip(positions @ plane[:3] + plane[3], 0.0, most)[:, None]
-        sunk = _moved(positions + beyond * unit_vectors(positions), view.projection)
+        sunk = _multiplied(positions + beyond * unit_vectors(positions), view.projection)
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
     values = np.zeros((len(positions), 2))
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
@@ -141,11 +141,11 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     place = (number + _LOWEST_PLACE) / layers
     model_view = placed.part.transform.T @ view.world_to_view
     outline = placed.part.vertices + (place - _MEAN_PLACE) * striation[:, 2:5]
-    positions = _moved(outline, model_view)[:, :3]
+    positions = _multiplied(outline, model_view)[:, :3]
     normals = unit_vectors(placed.part.normals @ model_view[:3, :3])
     facing = np.abs((normals * unit_vectors(positions)).sum(axis=1))
     values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
-    clip = _moved(positions, view.projection)
+    clip = _multiplied(positions, view.projection)
     triangles = placed.buffers.faces.astype(np.int32, copy=False)
     return _Surface(
         corners=clip,
@@ -157,6 +157,6 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     )
 
 
-def _moved(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:
+def _multiplied(points: npt.NDArray[np.floating], matrix: Floats64) -> Floats64:
     """Multiply points (n, 3) by a matrix for row vectors (4, 4); returns (n, 4)."""
     return np.asarray(points @ matrix[:3] + matrix[3])

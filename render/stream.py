@@ -38,14 +38,19 @@ _VERTEX_ATTRIBUTES = (
 )
 
 
-def _layout(count: int) -> tuple[str, ...]:
+def _vertex_format(count: int) -> tuple[str, ...]:
     """Return the format of the first `count` attributes of a vertex, and their names."""
     formats, names = zip(*_VERTEX_ATTRIBUTES[:count], strict=True)
     return " ".join(formats), *names
 
 
 # Number of columns of a stream -> layout of its vertices in OpenGL.
-VERTEX_LAYOUTS = {6: _layout(2), 8: _layout(3), 16: _layout(6), 18: _layout(7)}
+VERTEX_LAYOUTS = {
+    6: _vertex_format(2),
+    8: _vertex_format(3),
+    16: _vertex_format(6),
+    18: _vertex_format(7),
+}
 BUMP_COLUMNS = slice(8, 10)  # columns with the amounts of a bump map
 _Ranges = dict[TriangleGroup, tuple[int, int]]  # first triangle and count in a buffer of indices
 

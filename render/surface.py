@@ -158,7 +158,7 @@ class OffscreenSurface(Surface):
         is_reusable = self._is_reusable and self.gl.error == "GL_NO_ERROR"
         self._unbind()  # a released context would stay current, and block the context of a window
         if is_reusable and OffscreenSurface._spare is None:
-            OffscreenSurface._spare = self.gl, _environment()
+            OffscreenSurface._spare = self.gl, _glcontext_variables()
         else:
             self.gl.release()
 
@@ -192,7 +192,7 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
     return surface
 
 
-def _environment() -> dict[str, str]:
+def _glcontext_variables() -> dict[str, str]:
     """Return the environment variables by which glcontext chooses device and libraries."""
     return {name: value for name, value in os.environ.items() if name.startswith("GLCONTEXT_")}
 
@@ -200,7 +200,7 @@ def _environment() -> dict[str, str]:
 def _offscreen_context() -> moderngl.Context:
     """Return the context of a closed frame, or a new context, and make it current."""
     spare = OffscreenSurface._spare
-    if spare is not None and spare[1] == _environment():
+    if spare is not None and spare[1] == _glcontext_variables():
         OffscreenSurface._spare = None
         spare[0].__enter__()  # type: ignore[no-untyped-call]
         return spare[0]

@@ -69,7 +69,7 @@ class Texture(_Mipmaps):
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         gl = surface.gl
-        _check(image, "texture's image", 3, "sRGB")
+        _check_image(image, "texture's image", 3, "sRGB")
         if max(image.shape) > (limit := int(gl.info["GL_MAX_TEXTURE_SIZE"])):
             raise ValueError(
                 f"the texture's image has {image.shape[1]} x {image.shape[0]} texels; this driver "
@@ -80,8 +80,8 @@ class Texture(_Mipmaps):
         super().__init__(surface, _lit_texels(image, lit))
         texels = _first_halved(image, lit)
         for level in range(1, max(self.size).bit_length()):
-            self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
-            texels = _halved(texels)
+            self._texture.write(_square_roots(texels)[::-1].tobytes(), level=level)
+            texels = _halved_image(texels)
         # Drivers without this extension report 0. In software OpenGL it is several times slower.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(MOST_ANISOTROPY, gl.max_anisotropy)
@@ -135,7 +135,7 @@ class BumpMap(_Mipmaps):
         first, 255 the second. Raises ValueError for another shape or type.
         """
         kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
-        _check(texels, kind, channels, f"slopes along u and v{more}")
+        _check_image(texels, kind, channels, f"slopes along u and v{more}")
         self.texels = texels
         self.steepest = steepest
         self.define, self._unit = ("FINE", _FINE_UNIT) if channels == 2 else ("BUMPS", _BUMP_UNIT)
@@ -150,7 +150,7 @@ class BumpMap(_Mipmaps):
         program[f"{name}_strength"] = strength
 
 
-def _values() -> Floats32:
+def _linear_values() -> Floats32:
     """Return linear light of the 256 sRGB bytes, then 256 equal steps from 0 to 1, (512,)."""
     lights = to_linear(np.arange(256) / 255.0).astype(np.float32)
     fractions = np.arange(256, dtype=np.float32) / np.float32(255.0)
@@ -162,7 +162,7 @@ def _lit_texels(image: Image, occlusion: Image) -> Image:
     from .texture_kernels import write_roots  # here, because numba takes long to import
 
     texels = np.empty((*image.shape[:2], 4), np.uint8)
-    write_roots(image, occlusion, _roots(_values()), texels)
+    write_roots(image, occlusion, _square_roots(_linear_values()), texels)
     return texels
 
 
@@ -172,21 +172,21 @@ def _first_halved(image: Image, occlusion: Image) -> Floats32:
 
     height, width = image.shape[:2]
     if min(height, width) == 1:
-        indices = np.empty((height, width, 4), np.intp)  # indices of `_values()`
+        indices = np.empty((height, width, 4), np.intp)  # indices of `_linear_values()`
         indices[..., :3] = image
         indices[..., 3] = 256 + occlusion.astype(np.intp)
-        return _halved(_values().take(indices))
+        return _halved_image(_linear_values().take(indices))
     found = np.empty((height // 2, width // 2, 4), np.float32)
-    write_halved(image, occlusion, _values(), found)
+    write_halved(image, occlusion, _linear_values(), found)
     return found
 
 
-def _roots(values: Floats32) -> Image:
+def _square_roots(values: Floats32) -> Image:
     """Return square roots of values from 0 to 1, as bytes."""
     return np.rint(255.0 * np.sqrt(values)).astype(np.uint8)
 
 
-def _halved(values: Floats32) -> Floats32:
+def _halved_image(values: Floats32) -> Floats32:
     """Average blocks of 2 x 2 values, (H, W, C) -> (H // 2, W // 2, C).
 
     An odd last row or column is left out. A single row or column is kept.
@@ -211,7 +211,7 @@ def _median_redness(image: Image) -> float:
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 
 
-def _check(image: Image, name: str, channels: int, meaning: str) -> None:
+def _check_image(image: Image, name: str, channels: int, meaning: str) -> None:
     """Raise ValueError unless an array is an image with some number of channels."""
     is_image = image.ndim == 3 and image.shape[2] == channels and image.size > 0
     if not is_image or image.dtype != np.uint8:

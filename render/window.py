@@ -201,18 +201,18 @@ def open_window(
     if Surface._current is not None:
         Surface._current._unbind()
         Surface._current = None
-    with _complaints(glfw) as complaints:
+    with _collected_errors(glfw) as complaints:
         if not glfw.init():
             raise diagnose("opening a window", "; ".join(complaints))
         for version in (NEWEST_VERSION, OLDEST_VERSION):
             complaints.clear()
-            _hint(glfw, is_scaled, version)
+            _set_window_hints(glfw, is_scaled, version)
             if handle := glfw.create_window(*size, title, None, None):
                 break
         else:
             raise diagnose("opening a window", "; ".join(complaints))
         if visible:
-            _fit(glfw, handle)
+            _fit_into_screen(glfw, handle)
             glfw.show_window(handle)
     glfw.make_context_current(handle)
     glfw.swap_interval(1 if visible else 0)
@@ -229,7 +229,7 @@ def open_window(
     return surface
 
 
-def _fit(glfw: ModuleType, handle: Any) -> None:
+def _fit_into_screen(glfw: ModuleType, handle: Any) -> None:
     """Shrink a window so that it fits, with its decorations, into the work area of the screen."""
     if not (monitor := glfw.get_primary_monitor()):
         return
@@ -241,7 +241,7 @@ def _fit(glfw: ModuleType, handle: Any) -> None:
         glfw.set_window_size(handle, min(width, room[0]), min(height, room[1]))
 
 
-def _hint(glfw: ModuleType, is_scaled: bool, version: int) -> None:
+def _set_window_hints(glfw: ModuleType, is_scaled: bool, version: int) -> None:
     glfw.default_window_hints()
     glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
     glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version // 10 % 10)
@@ -264,7 +264,7 @@ def _import_glfw() -> ModuleType:
 
 
 @contextlib.contextmanager
-def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
+def _collected_errors(glfw: ModuleType) -> Iterator[list[str]]:
     """Collect error reports of GLFW, which would otherwise become Python warnings."""
     texts: list[str] = []
 

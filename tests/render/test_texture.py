@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.render.texture import _first_halved, _halved, _lit_texels, _roots, _values
+from risorius.render.texture import (
+    _first_halved,
+    _halved_image,
+    _linear_values,
+    _lit_texels,
+    _square_roots,
+)
 
 from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
 
@@ -110,7 +116,7 @@ def test_smaller_versions_are_means_of_blocks(size):
     tall, wide = (min(count, 2) for count in size)
     whole = values[: tall * height, : wide * width].astype(np.float64)
     means = whole.reshape(height, tall, width, wide, 4).mean(axis=(1, 3))
-    assert _halved(values) == pytest.approx(means, abs=1e-6)
+    assert _halved_image(values) == pytest.approx(means, abs=1e-6)
 
 
 @pytest.mark.parametrize("size", [(6, 4), (7, 5), (1, 6), (5, 1), (1, 1)])
@@ -123,9 +129,9 @@ def test_compiled_texels_are_those_of_whole_arrays(size, is_shaded):
     places = np.empty((*size, 4), np.intp)
     places[..., :3] = image
     places[..., 3] = 256 + occlusion.astype(np.intp)
-    values = _values()
-    assert (_lit_texels(image, occlusion) == _roots(values)[places]).all()
-    assert (_first_halved(image, occlusion) == _halved(values[places])).all()
+    values = _linear_values()
+    assert (_lit_texels(image, occlusion) == _square_roots(values)[places]).all()
+    assert (_first_halved(image, occlusion) == _halved_image(values[places])).all()
 
 
 def test_untextured_style_is_the_plain_picture(surface):
