@@ -19,7 +19,7 @@ def in_one_line(message: object) -> str:
 
 
 def as_text(name: object) -> str:
-    """Return a name that can be printed, and written into a file in UTF-8.
+    """Return a name in a form that can be printed, and written as UTF-8.
 
     Names of files are bytes. If they are not UTF-8, for example from an old archive, Python reads
     them as characters that cannot be encoded. This function writes such a byte as \\xe4.

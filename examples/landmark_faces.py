@@ -74,7 +74,10 @@ def opened_dlib() -> tuple[Any, Any]:
 
 
 def read_by_dlib(picture: np.ndarray, doublings: int = 0) -> list[np.ndarray]:
-    """The 68 points [pixels] of each face, in a picture doubled this often; [] without dlib."""
+    """The 68 points [pixels] of each face; [] without dlib.
+
+    doublings: number of times that the picture's size is doubled before the search.
+    """
     if importlib.util.find_spec("dlib") is None:
         return []
     detect, predict = opened_dlib()

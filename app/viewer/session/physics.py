@@ -235,8 +235,8 @@ class IdleLife:
     def is_on(self) -> bool:
         """Whether the face has idle life now.
 
-        There is none while a script is played, recorded or scrubbed, until it has ended, and none
-        while a live face moves the face. A script that is alive has idle life while it is played.
+        It has none while a live face moves it, while a script is recorded, and while it shows a
+        script before its end, unless a script with `alive = true` is playing.
         """
         session = self._session
         if not self._is_wanted() or session.scene.face is None:
