@@ -73,7 +73,7 @@ def painted(brows: Brows, size: int) -> Floats32:
     cover = np.zeros((size, size), np.float32)
     for side in (-1.0, 1.0):
         hairs = _hairs(brows, random)
-        _paint(cover, hairs, side, random.uniform(110.0, 230.0, len(hairs)))
+        _paint(cover, hairs, side, random.uniform(130.0, 250.0, len(hairs)))
     cover.flags.writeable = False
     return cover
 
@@ -147,8 +147,9 @@ def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> No
     blur = 3.0  # [texels] standard deviation of the colour between hairs
     soft = scipy.ndimage.gaussian_filter(fine, blur)
     covered = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
-    share_between = 0.9  # darkness between hairs, as a fraction of the local mean
-    np.maximum(covered, np.clip(fine + share_between * soft, 0.0, 0.92), out=covered)
+    share_between = 0.85  # darkness between hairs, as a fraction of the local mean
+    # Hairs lie over this darkness. A sum would reach its limit in dense brows, which would be flat.
+    np.maximum(covered, 1.0 - (1.0 - fine) * (1.0 - share_between * soft), out=covered)
 
 
 def _on_texture(points: Floats64, side: float) -> Floats64:

@@ -169,9 +169,10 @@ def _line_regions(shrink: int) -> _Places:
     taken += first * (radius > 8.0) * (radius < 42.0) * (angle > -1.4) * (level > 0.0)
     kept = np.maximum(1.0 - taken, 0.0)[..., None]
     near[..., :3] = FLAT_TEXEL + kept * (near[..., :3] - FLAT_TEXEL)
-    is_between = between > 1e-3
+    # Lines of the forehead follow its first slot, also where the built-in head has frown lines.
+    is_lined = between + above > 1e-3
     share_between = between / np.maximum(between + above, 1e-9)
-    near[is_between, 3] = 255.0 * share_between[is_between]
+    near[is_lined, 3] = 255.0 * share_between[is_lined]
     plain[rows, columns] = np.rint(near)
     x_sample = _sample_of(FOREHEAD_REACH, x)
     radii = _sample_of(FEET_REACH, radius)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from risorius.assets.identities import Sex, coloured, make_person, sample_identity
-from risorius.assets.identities.furrow_map import shared_map, with_lines
+from risorius.assets.identities.furrow_map import _line_regions, shared_map, with_lines
 from risorius.assets.identities.lines import Fan, Lines, Spread
 from risorius.assets.loading import load
 
@@ -190,3 +190,11 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
 def test_lines_between_the_brows_are_a_pair():
     """The shallower line is at least 0.45 times as deep as the other; it was 0.2 once."""
     assert max(each.uneven for each in people(40.0)) * 1.2 < 0.55
+
+
+def test_a_frown_shows_no_line_across_the_forehead():
+    """Lines of the forehead follow raised brows alone; a frown of person 18 showed a pale dash."""
+    places = _line_regions(1)
+    forehead = places.forehead
+    slot = places.plain[forehead.rows, forehead.columns, 3]
+    assert slot[forehead.texels[..., 3] > 0.99].max() == 0
