@@ -217,7 +217,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     growth = TIED_HAIR if cut.knot else replace(SHORT_HAIR, least=least)
     # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
     upward_fraction = 0.8
-    hangs = (normals[:, 1] < upward_fraction) | (behind < 2.0 * hem_depth)
+    hangs = (normals[:, 1] < upward_fraction) | (behind < 2.0 * hem_depth) | (cut.knot > 0.0)
     hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
     inside = from_within(_with_dense_hem(hair), faces[hangs[faces].all(axis=1)])
     return inside, hair, locks_on(hair, growth)
