@@ -27,7 +27,7 @@ from .report import Target, at_least, processor, table
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
-Surface = tuple[Points, Faces]
+PointsAndFaces = tuple[Points, Faces]
 Map = Callable[[Points], Points]
 
 ROUND_COUNT = 20  # rounds of timing a frame
@@ -47,18 +47,18 @@ class EmbeddingRow(NamedTuple):
     """Time of a frame of ours, median [ms]."""
 
 
-def sheet(cells: int) -> Surface:
+def sheet(cells: int) -> PointsAndFaces:
     """A square of side 2 in the plane z = 0."""
     return make_grid(cells, cells, 2.0 / cells)
 
 
-def sphere(levels: int) -> Surface:
+def sphere(levels: int) -> PointsAndFaces:
     """A sphere of radius 1 with nearly equal triangles."""
     ball = trimesh.creation.icosphere(levels)
     return np.array(ball.vertices), np.array(ball.faces, dtype=np.int32)
 
 
-def tube(around: int, along: int) -> Surface:
+def tube(around: int, along: int) -> PointsAndFaces:
     """An open cylinder along x, with radius 0.5 and length 4, that faces outward."""
     angles = 2.0 * np.pi * np.arange(around) / around
     stations = np.linspace(-2.0, 2.0, along + 1)
@@ -102,7 +102,7 @@ def swollen(points: Points) -> Points:
     return points * [1.0, 1.5, 1.5]
 
 
-EMBEDDING_CASES: tuple[tuple[str, Surface, Surface, tuple[Map, ...]], ...] = (
+EMBEDDING_CASES: tuple[tuple[str, PointsAndFaces, PointsAndFaces, tuple[Map, ...]], ...] = (
     ("plane", sheet(16), sheet(160), (rolled, waved, twisted)),
     ("sphere", sphere(2), sphere(5), (stretched, rolled, twisted)),
     ("cylinder", tube(16, 20), tube(128, 160), (rolled, twisted, swollen)),

@@ -37,7 +37,7 @@ from .canvas import CLAY_STYLE, Canvas, Drawing
 from .report import Target, at_least, table
 from .subjects import Points, Subject
 
-Mesh = Any
+AnyMesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
 
 PICTURE_SIDE = 480  # width and height of a picture [pixels]
@@ -131,7 +131,7 @@ def measure(
 
 def _bound_method(
     subject: Subject, refiner: str, options: Mapping[str, Any]
-) -> Callable[[Points], Mesh]:
+) -> Callable[[Points], AnyMesh]:
     """Bind a method to the subject's coarse mesh: a function from positions (V, 3) to a mesh."""
     own = dict(options)
     if own.get("scheme") == "detail":
@@ -174,7 +174,7 @@ def _refined_to_count(
 
 
 def _grey_pictures(
-    canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
+    canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: AnyMesh
 ) -> tuple[Points, Flags]:
     """Grey levels over the background (views, N, N), and flags of covered fine pixels.
 

@@ -33,7 +33,7 @@ from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
 from .report import processor, table
-from .rival_libraries import RIVAL_METHODS, Faces, Frame, Method, Points, Surface
+from .rival_libraries import RIVAL_METHODS, Faces, Method, Points, PointsAndFaces, RefinesFrame
 from .subjects import Subject
 
 TRIANGLE_RATIO = 4.0
@@ -73,7 +73,7 @@ class _Frame:
         self._refiner = refiner
         self._criterion = criterion
 
-    def __call__(self, positions: Points, limit: float) -> Surface:
+    def __call__(self, positions: Points, limit: float) -> PointsAndFaces:
         """Refine with the criterion's thresholds multiplied by `limit`."""
         if self._criterion is not None:
             self._criterion.thresholds = Thresholds(limit, 5.0 * limit, "measures")
@@ -81,23 +81,23 @@ class _Frame:
         return mesh.positions, mesh.triangles
 
 
-def _adaptive(faces: Faces, rest: Points) -> Frame:
+def _adaptive(faces: Faces, rest: Points) -> RefinesFrame:
     criterion = refine.Displacement()
     refiner = refine.create("kahler", faces, rest, scheme="cubic", blend=False, criterion=criterion)
     return _Frame(refiner, criterion)
 
 
-def _everywhere(faces: Faces, rest: Points, scheme: str) -> Frame:
+def _everywhere(faces: Faces, rest: Points, scheme: str) -> RefinesFrame:
     splits = np.ones(len(refine.create("none", faces, rest).edges), dtype=np.uint8)
     refiner = refine.create("kahler", faces, rest, scheme=scheme, blend=False, splits=splits)
     return _Frame(refiner, None)
 
 
-def _unrefined(faces: Faces, rest: Points) -> Frame:
+def _unrefined(faces: Faces, rest: Points) -> RefinesFrame:
     return _Frame(refine.create("none", faces, rest), None)
 
 
-OWN_BINDINGS: Mapping[str, Callable[[Faces, Points], Frame]] = {
+OWN_BINDINGS: Mapping[str, Callable[[Faces, Points], RefinesFrame]] = {
     "not refined": _unrefined,
     "cubic where a split moves most": _adaptive,
     "cubic, all edges": partial(_everywhere, scheme="cubic"),
@@ -213,7 +213,7 @@ def _limit_for_ratio(case: Case, method: Method) -> float:
     return high
 
 
-def _distance_from_truth(case: Case, surface: Surface) -> float:
+def _distance_from_truth(case: Case, surface: PointsAndFaces) -> float:
     """Root mean square distance from the true surface [millionths of the diagonal]."""
     points, triangles = surface
     away = closest_points(case.truth, points.astype(np.float64), triangles.astype(np.int32))
@@ -221,7 +221,7 @@ def _distance_from_truth(case: Case, surface: Surface) -> float:
     return 1e6 * float(np.sqrt((away.distances**2).mean())) / diagonal
 
 
-def _refined_by(case: Case, method: Method, limit: float) -> Surface:
+def _refined_by(case: Case, method: Method, limit: float) -> PointsAndFaces:
     return method.bind(case.faces, case.rest)(case.positions, limit)
 
 

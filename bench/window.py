@@ -27,7 +27,7 @@ from .report import Target, at_least, processor, table
 WARM_UP = 1.0  # [s]
 IDLE_SECONDS = 8.0
 
-Frames = list[list[float]]
+FrameRows = list[list[float]]
 """For each frame: seconds, seconds of processor time, milliseconds of the stages."""
 
 
@@ -46,7 +46,7 @@ def measure(
         "smile, side by side": Display(compare="side by side"),
         "smile, muscles": Display(overlays=["muscles"]),
     }
-    seen: dict[str, Frames] = {name: [] for name in cases}
+    seen: dict[str, FrameRows] = {name: [] for name in cases}
     rounds = 3
     with Viewer(_smile(), size, Display(), head=head) as viewer:
         triangle_count = len(viewer.session.scene.faces)
@@ -90,7 +90,7 @@ def _smile() -> Script:
     return replace(script_for(None, "face"), title="smile", duration=2.0, poses=poses)
 
 
-def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
+def _play(viewer: Viewer, display: Display, seconds: float) -> FrameRows:
     """Let the window play for some time; return the times of its frames."""
     viewer.settings.display = replace(display)
     viewer.face.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
@@ -100,7 +100,7 @@ def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
     return _run(viewer, seconds)
 
 
-def _run(viewer: Viewer, seconds: float) -> Frames:
+def _run(viewer: Viewer, seconds: float) -> FrameRows:
     frames = []
     last = time.perf_counter()
     used = time.process_time()

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ..geometry.arrays import Floats64, Integers64
 from ..schema import quoted
 
-Shape = tuple[int | None, ...]  # None: any length
+ArrayShape = tuple[int | None, ...]  # None: any length
 
 
 def number(what: str, value: Any) -> float:
@@ -31,7 +31,7 @@ def number(what: str, value: Any) -> float:
     return result
 
 
-def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
+def numbers(what: str, given: Any, shape: ArrayShape, wanted: str = "") -> Floats64:
     """Copy finite numbers in C order; raises ValueError if their shape is not `shape`.
 
     wanted: words for the shape in the error.
@@ -48,7 +48,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Floats64:
 
 
 def vertex_indices(
-    what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
+    what: str, given: Any, shape: ArrayShape, vertex_count: int, wanted: str
 ) -> Integers64:
     """Copy vertex indices in C order; wanted: words for the allowed values."""
     array = _array(what, given, "fiub", wanted)
@@ -88,6 +88,6 @@ def _array(what: str, given: Any, kinds: str, wanted: str) -> npt.NDArray[Any]:
     return array
 
 
-def _has_shape(array: npt.NDArray[Any], shape: Shape) -> bool:
+def _has_shape(array: npt.NDArray[Any], shape: ArrayShape) -> bool:
     pairs = zip(array.shape, shape, strict=False)
     return array.ndim == len(shape) and all(want in (None, has) for has, want in pairs)

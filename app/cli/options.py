@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..recordings.report import Report
     from ..script import Script
 
-Command = Callable[..., Any]
+CommandFunction = Callable[..., Any]
 SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND_OPTION = click.option(
     "--sound",
@@ -51,7 +51,7 @@ def option(*names: str, **about: Any) -> Any:
     return field(metadata={"option": (names, about)})
 
 
-def options_of(settings: type[Any]) -> Iterator[Command]:
+def options_of(settings: type[Any]) -> Iterator[CommandFunction]:
     """Yield the command-line options that the fields of a dataclass declare."""
     for each in fields(settings):
         names, about = each.metadata["option"]
@@ -59,7 +59,9 @@ def options_of(settings: type[Any]) -> Iterator[Command]:
         yield click.option(*names, each.name, **about)
 
 
-def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Command], Command]:
+def packed(
+    settings: type[Any], options: Iterable[CommandFunction] = ()
+) -> Callable[[CommandFunction], CommandFunction]:
     """Add the options of a dataclass to a command, which receives them as one object.
 
     The argument has the name of the dataclass in lower case. options: options in place of those
@@ -69,7 +71,7 @@ def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Co
     name = settings.__name__.lower()
     decorators = list(options or options_of(settings))
 
-    def decorate(command: Command) -> Command:
+    def decorate(command: CommandFunction) -> CommandFunction:
         """Wrap a command, so that it receives these options as one object."""
 
         @functools.wraps(command)
@@ -77,7 +79,7 @@ def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Co
             packed_in = settings(**{key: given.pop(key) for key in keys})
             return command(**given, **{name: packed_in})
 
-        wrapped: Command = call
+        wrapped: CommandFunction = call
         for each in reversed(decorators):
             wrapped = each(wrapped)
         return wrapped
@@ -294,7 +296,7 @@ def played(
     return with_sound(performance, sound)
 
 
-def printing(name: str, package: str, file: str, what: str) -> Command:
+def printing(name: str, package: str, file: str, what: str) -> CommandFunction:
     """Return an option that prints a file of a package and ends the program.
 
     what: help text of the option.

@@ -131,10 +131,12 @@ def fit_head(mesh: str | Path, landmarks: str | Path | None = None) -> FittedHea
     return replace(fitted, files=(path, file))
 
 
-Marks = tuple[Integers32, Floats64 | None]  # landmarks, see `read_landmarks`
+LandmarksAndPoints = tuple[Integers32, Floats64 | None]  # landmarks, see `read_landmarks`
 
 
-def _fit_shut_or_not(mesh: Mesh, marks: Marks, marks_of: Callable[[Mesh], Marks]) -> FittedHead:
+def _fit_shut_or_not(
+    mesh: Mesh, marks: LandmarksAndPoints, marks_of: Callable[[Mesh], LandmarksAndPoints]
+) -> FittedHead:
     """Fit a mesh; if skin covers mouth or eyes, remove fillings and part joined lips first.
 
     marks_of: function that returns the landmarks of a mesh with the same vertices, but other
@@ -178,7 +180,7 @@ def _fit_known_topology(mesh: Mesh, path: Path) -> FittedHead:
             "mark the landmarks in the window: `risorius view --head MESH`"
         )
 
-    def marks_of(parted: Mesh) -> Marks:
+    def marks_of(parted: Mesh) -> LandmarksAndPoints:
         """Return the known landmarks; inner lips that were parted get vertices of their own lip."""
         indices = known.landmarks
         nearest = nearest_vertices(mesh.vertices[indices], parted.vertices, parted.faces)
