@@ -87,7 +87,8 @@ class Compositor:
     def _mend_borders(self, area: Rectangle, picture: moderngl.Texture) -> None:
         """Draw the borders of an enlarged area anew, with pixels from further inside.
 
-        Enlargement mixes the outermost pixels of the area with black pixels beside it.
+        Enlargement mixes the outermost pixels of the area with black pixels beside it. To clamp its
+        texture coordinates would take twice as long on software OpenGL: 5.8 ms instead of 2.5.
         """
         width, height = self.size
         for strip, (x, y) in _inner_border_strips(area, self.size, picture.size[0] / width):

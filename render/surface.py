@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import OFFSCREEN_TITLE, GLError, diagnose
-from .render_target import RenderTarget
+from .render_target import NewTexture, RenderTarget
 
 Image = npt.NDArray[np.uint8]
 NEWEST_VERSION = 430  # OpenGL, times 100: it has compute shaders
@@ -36,12 +36,19 @@ class Surface:
 
     _current: ClassVar["Surface | None"] = None
 
-    def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        size: tuple[int, int],
+        samples: int,
+        new_texture: NewTexture | None = None,
+    ) -> None:
+        """new_texture: as in `RenderTarget`."""
         self.gl = gl
         gl.gc_mode = "context_gc"
         self.pixel_scale = self.scale = 1.0
         self.samples = possible_samples(gl, samples)
-        self.target = RenderTarget(gl, size, self.samples)
+        self.target = RenderTarget(gl, size, self.samples, new_texture)
         self._is_open = True
 
     @property

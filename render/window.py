@@ -25,6 +25,7 @@ from .surface import (
     Surface,
     check_size,
     image_of,
+    is_software,
     possible_samples,
 )
 
@@ -48,14 +49,14 @@ class WindowSurface(Surface):
         # Each question for the size waits for the answer of the X server.
         glfw.set_framebuffer_size_callback(handle, self._note_size)
         self._note_size(handle, *glfw.get_framebuffer_size(handle))
-        super().__init__(gl, size := self.frame_size, samples)
+        self._new_texture: NewTexture = partial(clamped_texture, gl)
+        if is_software(gl.info["GL_RENDERER"]):
+            self._new_texture = window_textures(gl, glfw.get_proc_address)
+        super().__init__(gl, size := self.frame_size, samples, self._new_texture)
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
         self.labels: Sequence[tuple[int, int, Image]] = ()
-        self._new_texture: NewTexture = partial(clamped_texture, gl)
-        if self.is_software:
-            self._new_texture = window_textures(gl, glfw.get_proc_address)
         self._compositor = Compositor(gl, size, self._new_texture)
         self._is_resolved = False  # whether `resolve` was called in this frame
         self._is_laid = False  # whether the compositor has the current scene

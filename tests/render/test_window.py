@@ -1,5 +1,6 @@
 """Windows: the interface and pictures of offscreen frames. They need a screen, or Xvfb."""
 
+import ctypes
 import time
 
 import numpy as np
@@ -158,3 +159,27 @@ def test_smoothed_edges_leave_small_discs_round(window):
     fine = draw_image(window, pupil)
     window.detail = render.Detail(samples=0)
     assert np.abs(draw_image(window, pupil) - fine).max() < 75  # 51 on software; more if square
+
+
+def test_software_keeps_pictures_in_the_byte_order_of_windows(window):
+    """On software OpenGL, scene, panels and stored background hold blue, green, red, as windows do.
+
+    Otherwise each copy into the window would take several times as long, with the same colours.
+    """
+    import glfw
+
+    if not window.is_software:
+        pytest.skip("a card draws the window")
+    draw_image(window, sphere())
+    address = ctypes.cast(glfw.get_proc_address("glGetIntegerv"), ctypes.c_void_p).value
+    query = ctypes.CFUNCTYPE(None, ctypes.c_uint, ctypes.POINTER(ctypes.c_int))(address)
+    bytes_of_a_read = 0x8B9B  # GL_IMPLEMENTATION_COLOR_READ_FORMAT: the order in memory
+    blue_green_red_alpha = 0x80E1
+    for size in ((64, 48), (80, 60)):
+        texture = window.target.new_texture(size)
+        for frame in (window.target.frame, window.gl.framebuffer([texture])):
+            frame.use()
+            order = ctypes.c_int()
+            query(bytes_of_a_read, ctypes.byref(order))
+            assert order.value == blue_green_red_alpha
+    assert window.gl.error == "GL_NO_ERROR"
