@@ -15,9 +15,11 @@ Few controls are used. The first is the control that reduces the sum most. The s
 that reduces the sum most together with the first, and so on. The slopes at the start determine the
 choice. So the controls depend only on the targets, not on the path of the finger, and the pose
 stays when the finger is released.
-A control is left out if it moves skin at the finger's rim more than skin at the mouse: a brow that
-is drawn up would open the lid. A control that moves other skin most is not added if it only
-replaces a part of another one: a chin that is drawn down would lower the lip instead of the jaw.
+A control that moves skin at the finger's rim more than skin at the mouse is only used if there is
+no answer without it: a brow that is drawn up would open the lid. A control that moves other skin
+most is not added if it only replaces a part of another one: a chin that is drawn down would lower
+the lip instead of the jaw. Nor is it the first one if one or two others hold the skin nearly as
+well, and move other skin much less: a corner that is drawn outward would move the whole mouth.
 No control moves the finger's skin away from its target. Otherwise a chin that is drawn down would
 also thrust the jaw forward, because this holds the rest of the jaw in its place.
 A target beyond the reach of the strongest control is moved back to this reach, because the price
@@ -34,20 +36,20 @@ lag, so the skin comes to rest in six steps of 0.3 ms. The slopes include effect
 springs lack: lips that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. With prices the
-problem is an elastic net (Zou, Hastie 2005), solved by coordinate descent (Friedman et al. 2007);
-with the factor at the end it is a relaxed elastic net (Meinshausen 2007).
+problem is an elastic net (Zou, Hastie 2005; lasso.py); with the factor at the end it is a relaxed
+elastic net (Meinshausen 2007).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Flags, Floats64
 from .face import Simulation
+from .lasso import Lasso
 
 STEP_LENGTH = 1.0 / 60.0  # [s] of a clone's steps
 Names = tuple[str, ...]
@@ -122,11 +124,10 @@ class Pull:
             least_of_best = 0.7
             best = fraction.max(initial=0.0)
             is_meant = fraction > min(least_of_largest, least_of_best * best)
-            # A control that moves the finger's rim more than the skin at the mouse is not meant.
+            # Other controls move the finger's rim more than the skin at the mouse.
             least_of_finger = 0.7
             lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
-            is_at_mouse = is_meant & (centre > least_of_finger * lengths)
-            is_meant = is_at_mouse if is_at_mouse.any() else is_meant
+            self._is_at_mouse = (centre > least_of_finger * lengths)[is_meant]
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._limits = self._limits[:, is_meant]
             self._value = self._start = self._start[is_meant]
@@ -159,13 +160,42 @@ class Pull:
         """Solve for these targets; earlier targets have no influence."""
         if not self._choose_candidates():
             return
+        self._solve_with(self._is_at_mouse)
+        if not self.changes and not self._is_at_mouse.all():
+            self._solve_with(np.ones_like(self._is_at_mouse))
+
+    def _solve_with(self, usable: Flags) -> None:
+        """Solve with some of the candidates, and keep the better one of two answers.
+
+        One answer begins with the control that improves most. The other one begins with a control
+        that moves the finger's skin most. It is better if it holds this skin nearly as well with
+        one or two controls, and moves other skin much less.
+        """
+        self._usable = usable
+        self._begin()
+        nearest = self._chosen_after(np.ones_like(usable))
+        at_home = self._chosen_after(self._is_at_home)
+        most_moved = 2.0 / 3.0  # of the other answer's motion of other skin, squared
+        moved, moved_at_home = map(self._motion_of_others, (nearest, at_home))
+        is_calmer = 1 <= at_home.sum() <= 2 and moved_at_home < most_moved * moved
+        self._solve_from(nearest)
+        if is_calmer:
+            most_loss = 0.1  # of the squared distances
+            least = self._squared_error(self._base.positions)
+            self._solve_from(at_home)
+            if self._squared_error(self._base.positions) > least + most_loss * self._drawn:
+                self._solve_from(nearest)
+
+    def _begin(self) -> None:
+        """Return to the state before the pull, and set the aims."""
         self._base.copy_from(self._home)
         self._slope[:] = self._first
         self._value = self._start
         self._aim()
-        needed = self._with_best(np.zeros(len(self._start), np.bool_))
-        while (more := self._with_best(needed)).sum() > needed.sum():
-            needed = more
+
+    def _solve_from(self, needed: Flags) -> None:
+        """Solve with these controls, and with others that become necessary."""
+        self._begin()
         most_rounds = 12  # of Gauss and Newton at most
         for _ in range(most_rounds):
             before = self._value
@@ -174,11 +204,23 @@ class Pull:
             if np.abs(self._value - before).max(initial=0.0) < self.ROUND_TOLERANCE:
                 break
             self._measure(np.flatnonzero(self._value != self._start))
-            needed = self._with_best(needed)
+            needed = self._with_best(needed, np.ones_like(needed))
         least_gain = 0.25  # of the squared distances: an answer must reduce them by at least this
         self.mends = self._squared_error(self._base.positions) < (1.0 - least_gain) * self._drawn
         if self.mends:
             self._stretch()
+
+    def _chosen_after(self, firsts: Flags) -> Flags:
+        """Choose controls one after another, the first one among those flagged by `firsts`."""
+        needed = self._with_best(np.zeros_like(firsts), firsts)
+        while (more := self._with_best(needed, firsts)).sum() > needed.sum():
+            needed = more
+        return needed
+
+    def _motion_of_others(self, needed: Flags) -> float:
+        """Mean square motion of all other skin by some controls, computed from slopes."""
+        moved = np.tensordot(self._system().change(needed), self._slope, 1)
+        return float(self._area @ (moved**2).sum(axis=1))
 
     def _take_values(self) -> None:
         """Let the clone's skin come to rest under the solved values."""
@@ -217,7 +259,7 @@ class Pull:
         self._low = np.where(along > least, self._start, low)
         self._high = np.where(along < -least, self._start, high)
         room = np.where(along > 0.0, high, low) - self._start
-        reach = float((along * room).max())
+        reach = float((along * room)[self._usable].max(initial=0.0))
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
         self._drawn = max(self._squared_error(self._from), 1e-12)
@@ -261,8 +303,11 @@ class Pull:
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _with_best(self, needed: Flags) -> Flags:
-        """Return the used controls and the control that improves most together with them."""
+    def _with_best(self, needed: Flags, firsts: Flags) -> Flags:
+        """Return the used controls and the control that improves most together with them.
+
+        firsts: flags of the controls that may be the first one.
+        """
         if needed.sum() >= self.MOST_CONTROLS:
             return needed
         system = self._system()
@@ -278,6 +323,9 @@ class Pull:
             after = system.change(needed | single[n])
             if (np.abs(after) < least_kept * np.abs(before))[needed].any():
                 costs[n] = np.inf
+        costs[~self._usable] = np.inf
+        if not needed.any():
+            costs[~firsts] = np.inf
         best = needed | single[costs.argmin()]
         # Controls whose gains differ by less than this share are used together, such as both sides
         # of a muscle.
@@ -288,7 +336,7 @@ class Pull:
         is_worth_it = best.sum() <= self.MOST_CONTROLS and costs.min() < system.cost(needed) - worth
         return best if is_worth_it else needed
 
-    def _system(self) -> _Lasso:
+    def _system(self) -> Lasso:
         """Return the linear problem at the current values."""
         now = self._base.positions
         count = len(self._value)
@@ -303,7 +351,7 @@ class Pull:
         effort = square_price * self._drawn
         changed = self._value - self._start
         price = 0.0041  # of a control at its limit, against skin that does not move at all
-        return _Lasso(
+        return Lasso(
             under @ under.T + others @ slope.T + effort * np.eye(count),
             under @ off + others @ (self._from - now).ravel() - effort * changed,
             0.5 * price * self._drawn / np.abs(self._limits).max(axis=0),
@@ -316,50 +364,3 @@ def _rest(clone: Simulation, values: dict[str, float]) -> None:
     steps_to_rest = 6  # of a clone after a small change; less than a twentieth of it is left
     for _ in range(steps_to_rest):
         clone.step(STEP_LENGTH)
-
-
-class _Lasso(NamedTuple):
-    """Find x with low <= changed + x <= high and least x G x - 2 r x + 2 price |changed + x|."""
-
-    gram: Floats64  # (C, C)
-    right: Floats64  # (C,)
-    price: Floats64  # (C,)
-    changed: Floats64  # (C,) change of each control so far
-    low: Floats64  # (C,)
-    high: Floats64  # (C,)
-
-    def minimise(self, usable: Flags) -> Floats64:
-        """Move one control after another to its minimum, until none moves any more; return x, (C,).
-
-        usable: flags of controls, shape (C,); all others return to their first values.
-        """
-        total = self.changed.copy()
-        downhill = self.right.copy()
-        downhill += self.gram[:, ~usable] @ total[~usable]
-        total[~usable] = 0.0
-        most_sweeps = 60  # most sweeps through all controls
-        sweep_tolerance = 1e-4  # a change that counts as none, between sweeps
-        for _ in range(most_sweeps):
-            farthest = 0.0
-            for c in np.flatnonzero(usable):
-                slope = self.gram[c, c]
-                to = total[c] + downhill[c] / slope
-                to = np.sign(to) * max(abs(to) - self.price[c] / slope, 0.0)
-                by = min(max(to, self.low[c]), self.high[c]) - total[c]
-                if by:
-                    total[c] += by
-                    downhill -= by * self.gram[c]
-                    farthest = max(farthest, abs(by))
-            if farthest < sweep_tolerance:
-                break
-        return total - self.changed
-
-    def change(self, usable: Flags) -> Floats64:
-        """Return the change of each control, so far and to the minimum, (C,)."""
-        return self.changed + self.minimise(usable)
-
-    def cost(self, usable: Flags) -> float:
-        """Return the least value of the sum with only these controls, up to a constant."""
-        x = self.minimise(usable)
-        spent = self.price @ np.abs(self.changed + x)
-        return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

@@ -1,5 +1,7 @@
 """Pull to pose: muscles hold skin at the place to which it was pulled."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.linalg import norm
@@ -17,6 +19,7 @@ CHIN_LANDMARK = 8
 LEFT_LID = 44
 INNER_BROW = 22
 LEFT_WING = 35
+LEFT_LOWER_LIP = 56
 
 
 def candidates(face):
@@ -78,10 +81,15 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
         (CHIN_LANDMARK, (8.0, 0.0, 0.0), {"jaw_sideways"}),
         (LEFT_CORNER, (0.0, -6.0, 0.0), {"depressor_anguli_oris_left"}),
         (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
+        (LEFT_CORNER, (5.0, 0.0, 0.0), {"risorius_left", "zygomaticus_major_left"}),
+        (LEFT_LOWER_LIP, (0.0, -5.0, 0.0), {"depressor_labii_inferioris_left"}),
     ],
 )
 def test_skin_is_held_by_the_muscles_of_anatomy(simulation, head, landmark, offset, wanted):
-    """Pulled brow, chin, corner and lid are each held by the few muscles of anatomy."""
+    """Pulled brow, chin, corner, lid and lip are each held by the few muscles of anatomy.
+
+    The corner drawn outward moved the whole mouth, and the lip drawn down opened the jaw.
+    """
     pull, before = pull_at(simulation, head.landmarks[landmark], offset)
     found = values_of(pull)
     assert wanted <= found.keys()
@@ -102,6 +110,62 @@ def test_skin_without_muscles_does_not_move(simulation, head):
         pull.targets = pull.targets + 5.0
         pull.solve()
         assert not pull.changes
+
+
+class FlatFace:
+    """A row of skin, moved in proportion to its controls; it has all that a pull needs."""
+
+    def __init__(self, motions):
+        """motions: motion of each point [mm] at the limit of a control, (n,), by its name."""
+        self.motions = motions
+        (count,) = {len(motion) for motion in motions.values()}
+        self.areas = np.ones(count)
+        names = dict.fromkeys(motions, 0.0)
+        limits = dict.fromkeys(motions, (0.0, 1.0))
+        self.controls = SimpleNamespace(values=names, limits=limits)
+
+    @property
+    def positions(self):
+        """The points, (n, 3): they move up."""
+        height = sum(self.controls.values[name] * motion for name, motion in self.motions.items())
+        return np.column_stack([np.arange(len(height)), height, 0.0 * height])
+
+    def clone(self):
+        """Return a copy."""
+        copy = FlatFace(self.motions)
+        copy.copy_from(self)
+        return copy
+
+    def copy_from(self, other):
+        """Take over the values of another row."""
+        self.controls.values = dict(other.controls.values)
+
+    def jump(self, values):
+        """Set values of controls."""
+        self.controls.values.update(values)
+
+    def step(self, seconds):
+        """Do nothing: the row is always at rest."""
+
+
+def names_for(face, distance):
+    """The controls that hold the first point, in the finger's middle, after a pull up [mm]."""
+    firmness = [1.0, 0.3, 0.3]
+    pull = sim.Pull(face, [0, 1, 2], firmness, [(name,) for name in face.motions])
+    pull.targets = pull.targets + np.array([0.0, distance, 0.0])
+    pull.solve()
+    return set(values_of(pull))
+
+
+def test_skin_at_the_mouse_counts_more_than_skin_at_the_rim():
+    """A control that moves the finger's rim most is only used if no other control answers.
+
+    A brow that was drawn up opened the lid at the finger's rim.
+    """
+    brow = np.array([4.0, 1.5, 1.5, 0.0])
+    lid = np.array([4.0, 10.0, 10.0, 0.0])
+    assert names_for(FlatFace({"brow": brow, "lid": lid}), 5.0) == {"brow"}
+    assert names_for(FlatFace({"brow": -brow, "lid": lid}), 5.0) == {"lid"}
 
 
 @pytest.mark.parametrize(
