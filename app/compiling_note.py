@@ -6,6 +6,8 @@ import logging
 
 import click
 
+COMPILING_TEXT = "Compiling, once for each kind of work: half a minute, longer on a busy machine."
+
 
 class _CompilingNote(logging.Handler):
     """Prints one note on compilation, and one if compiled kernels cannot be stored (jit.py)."""
@@ -16,7 +18,7 @@ class _CompilingNote(logging.Handler):
         """Print a line, unless a line of this level was printed before."""
         if record.levelno not in self._printed:
             self._printed |= {record.levelno}
-            line = "Compiling, once for each kind of work: up to half a minute."
+            line = COMPILING_TEXT
             if record.levelno >= logging.WARNING:
                 line = f"risorius: {record.getMessage()}"
             click.echo(line, err=True)

@@ -181,6 +181,10 @@ class Display(Record):
             else Refinement(self.beside)
         )
 
+    def has_equal_sides(self, scene: Drawable) -> bool:
+        """Whether both sides of a comparison show this scene with the same refinement."""
+        return self.refinement_beside == self.refinement_on(scene)
+
     @property
     def share(self) -> float:
         """The width of a comparison's left part, as a fraction of the picture's width."""

@@ -99,7 +99,10 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
 
 
 def test_any_look_can_be_the_left_one(viewer):
-    """The mouse chooses the left look of a comparison; the picture has both names."""
+    """The mouse chooses the left look of a comparison; the picture has both names.
+
+    A line says that both looks are the same, for example if smooth is compared with smooth.
+    """
     viewer.settings.display = Display(compare="side by side")
     only_open(viewer, "Refinement")
     in_panel(viewer, ("Beside", "paper"))
@@ -111,6 +114,9 @@ def test_any_look_can_be_the_left_one(viewer):
     assert [each.drawn.label for each in sides] == ["paper", "smooth"]
     size = max(viewer.face.view.viewport[3] / 36.0, 15.0)
     assert np.array_equal(viewer.surface.labels[0][2], plate("paper\n2030 triangles", size))
+    assert mechanism.EQUAL_SIDES_TEXT not in viewer.gui.places
+    in_panel(viewer, ("Beside", "smooth"))
+    assert until(viewer, lambda: mechanism.EQUAL_SIDES_TEXT in viewer.gui.places)
     in_panel(viewer, ("Beside", "static"))  # as the picture calls it
     assert viewer.settings.display.beside == "none"
     assert until(viewer, lambda: viewer.schedule.is_idle)

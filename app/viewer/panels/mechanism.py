@@ -50,6 +50,7 @@ MECHANISM_HINTS = {
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
+EQUAL_SIDES_TEXT = "Both sides show the same look."
 NUMBER_KINDS = ("integer", "number")  # kinds of options that are numbers
 # Chosen: a second for each frame on software OpenGL, so that the number can be lowered again.
 MOST_SHOWN_TRIANGLES = 600_000
@@ -123,6 +124,9 @@ class MechanismPanel:
             beside = STATIC_LABEL if display.beside == STATIC_REFINER else display.beside
             put = lambda label: setattr(display, "beside", looks[label])  # noqa: E731
             self._rows.choice_row("Beside", beside, tuple(looks), put)
+            if display.has_equal_sides(stage.scene):
+                muted(self._gui, EQUAL_SIDES_TEXT)
+                self._gui.remember(EQUAL_SIDES_TEXT)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count

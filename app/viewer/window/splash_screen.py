@@ -15,11 +15,12 @@ from PIL import ImageDraw, ImageFont
 
 from risorius import render
 
+from ...compiling_note import COMPILING_TEXT
+from ...text import counted
 from ..interface.gui import FONT_FILE, FONT_SIZE, THEMES, Theme, wait_for_event
 from ..settings import Settings, load_settings
 
 LOADING_TEXT = "Loading the face ..."
-COMPILING_TEXT = "Compiling, once for each kind of work: up to half a minute ..."
 Result = TypeVar("Result")
 
 
@@ -41,6 +42,7 @@ class SplashScreen(logging.Handler):
         remembered = self.settings.size
         known = size or remembered
         self._text = LOADING_TEXT
+        self._compiled_count = 0
         self._drawn = ((0, 0), "")
         most = 2560, 1440  # [units of a screen of ordinary density]
         self.surface = render.open_window(known or most, "Risorius", is_scaled=known is None)
@@ -54,8 +56,9 @@ class SplashScreen(logging.Handler):
         self._show()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Show that code is being compiled; the log has a record for each function."""
-        self._text = COMPILING_TEXT
+        """Show how many functions have been compiled; the log has a record for each of them."""
+        self._compiled_count += 1
+        self._text = compiling_text(self._compiled_count)
 
     def __enter__(self) -> SplashScreen:
         return self
@@ -85,6 +88,15 @@ class SplashScreen(logging.Handler):
         self.surface.show(picture(size, letter, THEMES[self.settings.theme], text))
 
 
+def compiling_text(count: int) -> str:
+    """Return two lines that are shown while functions are compiled; count: their number so far.
+
+    The number shows progress, because a busy machine takes longer than the first line says.
+    """
+    functions = counted(count, "function")
+    return f"{COMPILING_TEXT}\n{functions} so far ..."
+
+
 def zoom_for(surface: render.WindowSurface, height: float) -> float:
     """Return the factor on the size of words that makes them readable in a large window.
 
@@ -95,7 +107,7 @@ def zoom_for(surface: render.WindowSurface, height: float) -> float:
 
 
 def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> render.Image:
-    """Return an image with a line of text in its middle."""
+    """Return an image with one or two lines of text in its middle."""
     shade = tuple(round(255.0 * part) for part in theme.panel)
     page = PIL.Image.new("RGB", size, shade)
     font = (
@@ -104,5 +116,6 @@ def picture(size: tuple[int, int], letter: float, theme: Theme, text: str) -> re
         else ImageFont.load_default(letter)
     )
     ink = "white" if theme.is_dark else "black"
-    ImageDraw.Draw(page).text((size[0] / 2, size[1] / 2), text, ink, font, "mm")
+    middle = size[0] / 2, size[1] / 2
+    ImageDraw.Draw(page).text(middle, text, ink, font, "mm", spacing=letter, align="center")
     return np.asarray(page)
