@@ -77,6 +77,11 @@ class Texture(_Mipmaps):
             )
         self.redness = _median_redness(image)
         lit = np.full((1, 1), 255, np.uint8) if occlusion is None else occlusion
+        if occlusion is not None and occlusion.shape != image.shape[:2]:
+            raise ValueError(
+                f"the ambient occlusion has shape {occlusion.shape}; it must be "
+                f"{image.shape[:2]}, as the texture's image"
+            )
         super().__init__(surface, _lit_texels(image, lit))
         texels = _first_halved(image, lit)
         for level in range(1, max(self.size).bit_length()):

@@ -8,6 +8,7 @@ from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.fitting.landmark_file import nearest_vertices
 from risorius.assets.fitting.painting import plain_skin, sampled
 from risorius.assets.meshes import Mesh
+from risorius.assets.pictures import MeshPictures
 from risorius.bench.subjects import decimated
 from risorius.geometry.closest import closest_points
 
@@ -56,3 +57,19 @@ def test_brows_and_lips_lie_at_their_places(head, has_points, most_at_brows, mos
     assert at_lips < most_at_lips
     assert other_brows < 0.15
     assert other_lips < 0.10
+
+
+def test_maps_of_an_own_texture_are_as_exact(head):
+    """A coarse head with a texture keeps it; red lips have their places in its maps."""
+    vertices, faces = decimated(head.vertices, head.faces, TRIANGLES)
+    true = head.vertices[head.landmarks]
+    landmarks = nearest_vertices(true, vertices, faces)
+    flat = fit(Mesh(vertices, faces), landmarks, points=true)
+    assert np.array_equal(np.sort(flat.file_vertices), np.arange(len(vertices)))
+    uv = np.empty((len(vertices), 2), np.float32)
+    uv[flat.file_vertices] = flat.uv
+    picture = np.full((64, 64, 3), 120, np.uint8)
+    texture = MeshPictures(uv, faces, np.zeros(len(faces), np.int32), (lambda: picture,))
+    fitted = fit(Mesh(vertices, faces, texture=texture), landmarks, points=true)
+    assert np.array_equal(fitted.albedo, picture)
+    assert differences(head, fitted, LIPS)[1] < 0.06

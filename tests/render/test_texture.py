@@ -239,6 +239,12 @@ def test_bad_images(surface, image, message):
         render.Texture(surface, image)
 
 
+def test_occlusion_of_another_size_is_refused(surface):
+    """Ambient occlusion needs the size of the image, beyond which memory would be read."""
+    with pytest.raises(ValueError, match=r"occlusion has shape \(4, 4\); it must be \(8, 8\)"):
+        render.Texture(surface, plain_image((180, 140, 120)), np.zeros((4, 4), np.uint8))
+
+
 @pytest.mark.parametrize("shading", render.Shading)
 def test_less_light_where_it_is_less_open(surface, shading):
     """The texture's ambient occlusion darkens light from all sides, not the key light."""
