@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.read_only import read_only
 from .data_files import Image
 
 MAP_SIZE = 40  # [texels]; oil changes slowly
@@ -47,6 +47,8 @@ class Marked(Protocol):
 
 def oil_of(head: Marked) -> Image:
     """Return the oil on a head in the layout of its texture, 255 on the forehead, (H, W), uint8."""
+    from scipy.spatial import cKDTree  # slow to import, and a head loads without it
+
     marks = head.vertices[head.landmarks]
     places, amounts = _sites(marks)
     vertices = np.zeros(len(head.uv), np.int64)  # of each row of `uv`
@@ -59,8 +61,7 @@ def oil_of(head: Marked) -> Image:
     away, beside = cKDTree(head.uv).query(texels, k=min(4, len(oil)))
     weights = 1.0 / np.square(away * MAP_SIZE + 0.3)
     mixed = (weights * oil[beside]).sum(axis=1) / weights.sum(axis=1)
-    found: Image = np.rint(255.0 * mixed).astype(np.uint8).reshape(MAP_SIZE, MAP_SIZE)
-    return found
+    return read_only(np.rint(255.0 * mixed).astype(np.uint8).reshape(MAP_SIZE, MAP_SIZE))
 
 
 def _mixed(points: Floats64, places: Floats64, amounts: Floats64, blur: float) -> Floats64:
