@@ -99,7 +99,8 @@ Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the
 and those that this program measures. Times are medians. Met: the number lies within the tolerance;
 where the paper gives no number, the tolerance is ours. Differs: the number differs from the paper,
 and the reason is below the table. MISSED: the number lies outside. A level is 1/255 of the
-brightness of a channel."""
+brightness of a channel. docs/the_paper_in_code.md has file and function of each statement of
+section 4."""
     style = (
         "body { max-width: 80rem; margin: auto } img { max-width: 100% } pre { overflow-x: auto }"
     )
