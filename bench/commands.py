@@ -224,19 +224,18 @@ def bench_persons(count: int) -> None:
 )
 @click.option(
     "--count",
-    type=click.IntRange(3, 10000),
+    type=click.IntRange(20, 10000),
     default=40,
     show_default=True,
-    help="Number of persons.",
+    help="Number of persons; fewer than 20 cannot have 14 components.",
 )
 @click.option("--model", type=FILE_TYPE, help="shape_predictor_68_face_landmarks.dat of dlib.")
 @click.option("--network", type=FILE_TYPE, help="dlib_face_recognition_resnet_model_v1.dat.")
 def bench_recognition(first: int, count: int, model: Path | None, network: Path | None) -> None:
     """Measure how far apart persons are for dlib's face recognition."""
-    from . import landmarks, recognition
+    from . import recognition
 
-    if not landmarks.is_installed("dlib"):
-        click.echo("skipped: dlib is not installed; pip install '.[dlib]' brings it")
+    if _is_missing("dlib"):
         return
     describe = recognition.open_network(model, network)
     descriptions = recognition.measure(range(first, first + count), describe)
@@ -310,12 +309,21 @@ def bench_landmarks(folder: Path, detector: str, model: Path | None) -> None:
     """
     from . import landmarks
 
-    if not landmarks.is_installed(detector):
-        click.echo(f"skipped: {detector} is not installed; pip install '.[{detector}]' brings it")
+    if _is_missing(detector):
         return
     with landmarks.opened(detector, model) as detect:
         found = landmarks.measure(folder, detector, detect)
     conclude(landmarks.report(found), landmarks.targets(found))
+
+
+def _is_missing(library: str) -> bool:
+    """Whether an optional library is not installed; then a line says so."""
+    from . import landmarks
+
+    if landmarks.is_installed(library):
+        return False
+    click.echo(f"skipped: {library} is not installed; pip install '.[{library}]' brings it")
+    return True
 
 
 @bench.command("gaps")

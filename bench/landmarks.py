@@ -120,11 +120,7 @@ def opened(detector: str, model: Path | None) -> Iterator[Detector]:
 def _dlib(model: Path | None) -> Detector:
     """dlib's detector of frontal faces, and its 68 points in the face."""
     dlib = optional_import("dlib", "the detector", "dlib")
-    file = model or packaged_model()
-    try:
-        predictor = dlib.shape_predictor(str(file))
-    except RuntimeError as error:
-        raise UserError(f"{file}: is not a shape predictor of dlib: {error}") from None
+    predictor = model_of_dlib(dlib.shape_predictor, model or packaged_model())
     faces = dlib.get_frontal_face_detector()
     larger = 1  # number of times that a picture is enlarged to twice its size, for small faces
 
@@ -140,6 +136,14 @@ def _dlib(model: Path | None) -> Detector:
         return np.array([(point.x, point.y) for point in points], dtype=np.float64)
 
     return detect
+
+
+def model_of_dlib(kind: Callable[[str], Any], file: Path) -> Any:
+    """Read a file as a model of dlib; kind: the class. Raises UserError for another file."""
+    try:
+        return kind(str(file))
+    except RuntimeError as error:
+        raise UserError(f"{file}: is no {kind.__name__} of dlib: {error}") from None
 
 
 def packaged_model(

@@ -21,7 +21,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 from risorius.geometry.arrays import Floats64
 
-from .landmarks import packaged_model
+from .landmarks import model_of_dlib, packaged_model
 from .report import Target, at_least, at_most
 
 SAME_PERSON = 0.6  # distance below which dlib takes two pictures for one person
@@ -36,13 +36,13 @@ def open_network(predictor: Path | None, network: Path | None) -> Describe:
     """Return a function that describes the face in a picture by 128 numbers; None without a face.
 
     predictor, network: dlib's files; None takes those of the package face_recognition_models.
+    Raises UserError for missing or other files.
     """
     dlib = optional_import("dlib", "face recognition", "dlib")
-    predictor = predictor or packaged_model()
     network = network or packaged_model("dlib_face_recognition_resnet_model_v1.dat", "--network")
     detect = dlib.get_frontal_face_detector()
-    locate = dlib.shape_predictor(str(predictor))
-    recognition = dlib.face_recognition_model_v1(str(network))
+    locate = model_of_dlib(dlib.shape_predictor, predictor or packaged_model())
+    recognition = model_of_dlib(dlib.face_recognition_model_v1, network)
 
     def describe(picture: Image) -> Floats64 | None:
         """The description of the first face that is found."""

@@ -159,7 +159,8 @@ def _small_skin(skin: SkinPiece, normals: Floats64, cuts: int) -> tuple[SkinPiec
 
 def _nearness_to_face(skin: SkinPiece, vertices: Floats64) -> Floats64:
     """Return 1 for vertices [mm] near brows, nose, eyes and mouth, 0 far away, (V,)."""
-    near, far = 15.0, 35.0  # [mm] from landmarks
+    near = 15.0  # [mm] from landmarks
+    far = 35.0  # [mm]
     landmarks = skin.vertices[skin.landmarks[FIRST_OF_FACE:]]
     distance = scipy.spatial.cKDTree(landmarks).query(vertices)[0]
     nearness: Floats64 = ((far - distance) / (far - near)).clip(0.0, 1.0)

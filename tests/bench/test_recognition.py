@@ -1,8 +1,10 @@
 """The benchmark of face recognition: its measures, and the message without dlib's files."""
 
 import numpy as np
+import pytest
 from pytest import approx
 
+from risorius.app.errors import UserError
 from risorius.bench import landmarks, recognition
 from tests.app.command_line import succeeded
 
@@ -31,5 +33,16 @@ def test_persons_without_a_found_face_are_left_out():
 def test_without_dlib_one_line_says_so(monkeypatch):
     """dlib is an optional extra: its absence is reported in one line."""
     monkeypatch.setattr(landmarks, "is_installed", lambda name: False)
-    output = succeeded("bench", "recognition", "--count", 3)
+    output = succeeded("bench", "recognition", "--count", 20)
     assert output == "skipped: dlib is not installed; pip install '.[dlib]' brings it\n"
+
+
+def test_another_file_is_no_model(tmp_path):
+    """A file that dlib cannot read is refused in one line."""
+
+    def shape_predictor(file):
+        raise RuntimeError("Unexpected version")
+
+    file = tmp_path / "other.dat"
+    with pytest.raises(UserError, match=r"other\.dat: is no shape_predictor of dlib"):
+        landmarks.model_of_dlib(shape_predictor, file)
