@@ -69,7 +69,7 @@ class Pipeline:
             fine = skin.fine_shape
             bumps = None if fine is None else self.renderer.bump_map(*fine, channels=2)
             surface = self.renderer.surface
-            texture = render.Texture(surface, albedo, skin.ambient_occlusion, bumps, skin.oil)
+            texture = render.SkinTexture(surface, albedo, skin.ambient_occlusion, bumps, skin.oil)
             self.maps = replace(self.maps, texture=texture)
 
     def step(self, seconds: float) -> None:

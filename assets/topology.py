@@ -5,14 +5,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..geometry.arrays import Floats64, Integers64
+from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.sides import different_pairs, sides_of
 
-Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
 
 
-def boundary_loops(faces: Faces) -> list[list[int]]:
+def boundary_loops(faces: Integers32) -> list[list[int]]:
     """Return closed rows of boundary vertices, in the direction of their faces, longest first.
 
     At a vertex where holes meet, a row continues around the adjacent faces, and may return to the
@@ -65,13 +64,13 @@ def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
     return triangles
 
 
-def border_vertices(faces: Faces) -> Integers64:
+def border_vertices(faces: Integers32) -> Integers64:
     """Indices of the vertices on edges with one face, in ascending order."""
     edges, numbers = different_pairs(np.sort(sides_of(faces), axis=1))
     return np.unique(edges[np.bincount(numbers) == 1])
 
 
-def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
+def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Integers32:
     """Triangles between neighbouring rows of vertex indices (r, n); closed: each row is a ring.
 
     a--d   a and d are neighbours in a row, b and c in the next row. Triangles: a b c, then a c d.
@@ -90,11 +89,11 @@ def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> F
 class Quartered(NamedTuple):
     """A triangle list after one cut, and the ends of each new vertex's edge."""
 
-    faces: Faces  # (4 F, 3)
-    edges: Faces  # (E, 2), lower number first
+    faces: Integers32  # (4 F, 3)
+    edges: Integers32  # (E, 2), lower number first
 
 
-def quarter(faces: Faces, vertex_count: int) -> Quartered:
+def quarter(faces: Integers32, vertex_count: int) -> Quartered:
     """Cut every triangle into four; edge e gets the new vertex `vertex_count` + e.
 
             c           Old vertices keep their indices. The four children of face f are the faces
@@ -111,14 +110,16 @@ def quarter(faces: Faces, vertex_count: int) -> Quartered:
     return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
 
 
-def is_manifold(faces: Faces) -> bool:
+def is_manifold(faces: Integers32) -> bool:
     """Whether each edge has one face, or two faces that run along it in opposite directions."""
     sides = sides_of(faces)
     both = np.bincount(different_pairs(np.sort(sides, axis=1))[1])
     return len(different_pairs(sides)[0]) == len(sides) and both.max(initial=0) <= 2
 
 
-def collapsed(vertices: Floats64, faces: Faces, count: int, attempt: int) -> tuple[Floats64, Faces]:
+def collapsed(
+    vertices: Floats64, faces: Integers32, count: int, attempt: int
+) -> tuple[Floats64, Integers32]:
     """Return a simplified mesh of about `count` triangles, which may be non-manifold.
 
     By quadric error metrics (Garland, Heckbert 1997, "Surface simplification using quadric error

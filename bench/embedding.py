@@ -20,14 +20,14 @@ import trimesh
 from risorius import refine
 from risorius.assets.sheets import make_grid
 from risorius.assets.topology import grid_faces
+from risorius.geometry.arrays import Integers32
 from risorius.geometry.closest import SurfacePoints, closest_points
 from risorius.geometry.directions import unit_vectors
 
 from .report import Target, at_least, processor, table
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
-PointsAndFaces = tuple[Points, Faces]
+PointsAndFaces = tuple[Points, Integers32]
 Map = Callable[[Points], Points]
 
 ROUND_COUNT = 20  # rounds of timing a frame
@@ -112,7 +112,7 @@ EMBEDDING_CASES: tuple[tuple[str, PointsAndFaces, PointsAndFaces, tuple[Map, ...
 class FlatBinding:
     """A point on the flat triangle nearest at rest, and the offset in the triangle's own axes."""
 
-    def __init__(self, faces: Faces, rest: Points, points: Points) -> None:
+    def __init__(self, faces: Integers32, rest: Points, points: Points) -> None:
         """Bind `points` at rest."""
         self._places: SurfacePoints = closest_points(points, rest, faces)
         away = points - self._places.interpolate(rest)

@@ -25,13 +25,13 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import load_head
-from risorius.geometry.arrays import Flags
+from risorius.geometry.arrays import Flags, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .report import Target, at_most, table
-from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, Faces, Points, read_arrays
+from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, Points, read_arrays
 
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
@@ -52,8 +52,8 @@ class IdentitySpace:
 
     mean: Points
     """Shape (V, 3)."""
-    triangles: Faces
-    landmarks: Faces
+    triangles: Integers32
+    landmarks: Integers32
     """Vertex indices of the 68 landmarks."""
     modes: Points
     """Shape (k, V, 3); a weight of 1 is one standard deviation."""
@@ -130,13 +130,13 @@ class HeadMesh:
     """One mesh of a head [mm], with its unit normals and the points of its 68 landmarks."""
 
     vertices: Points
-    faces: Faces
+    faces: Integers32
     normals: Points
     landmarks: Points
 
 
 @dataclass(frozen=True)
-class Rest:
+class Remainder:
     """The difference between a surface and the nearest person of the modes."""
 
     weights: Points
@@ -147,7 +147,7 @@ class Rest:
     """Median angle between normals, by the same regions [deg]."""
 
 
-def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
+def measure(folder: Path, head_file: Path | None = None) -> dict[str, Remainder]:
     """Measure the coarse and the finest mesh of a head; without a file, of the built-in head.
 
     Raises UserError for a broken folder, AssetError for a broken head.
@@ -165,7 +165,7 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
     return {name: unexplained(space, labels, each) for name, each in surfaces.items()}
 
 
-def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest:
+def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Remainder:
     """Fit the nearest person of the space to a surface, and measure the remaining difference.
 
     labels: the region of each of the space's vertices, "" for none.
@@ -217,14 +217,16 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rest
     distance = (away * facing).sum(axis=1)
     angle = np.degrees(np.arccos(cosine))
     groups = {name: near & (labels[asked] == name) for name in REGION_NAMES} | {"all": near}
-    return Rest(
+    return Remainder(
         weights,
         {name: _rms(distance[group]) for name, group in groups.items()},
         {name: _median(angle[group]) for name, group in groups.items()},
     )
 
 
-def _point_derivatives(modes: Points, points: Points, numbers: Faces, directions: Points) -> Points:
+def _point_derivatives(
+    modes: Points, points: Points, numbers: Integers32, directions: Points
+) -> Points:
     """Derivative of points along `directions` (n, 3), by modes, turns and shifts, (n, K + 6).
 
     modes: rotated, shape (K, V, 3). numbers: indices of the points, shape (n,).
@@ -236,7 +238,7 @@ def _point_derivatives(modes: Points, points: Points, numbers: Faces, directions
 
 
 def _nearest_surface_points(
-    points: Points, triangles: Faces, asked: Faces, surface: HeadMesh
+    points: Points, triangles: Integers32, asked: Integers32, surface: HeadMesh
 ) -> tuple[Points, Points, Points]:
     """Nearest point of the surface to each point, its normal, and the cosine between both
     normals.
@@ -257,7 +259,7 @@ def _median(values: Points) -> float:
     return float(np.median(values)) if len(values) else float("nan")
 
 
-def report(found: Mapping[str, Rest]) -> str:
+def report(found: Mapping[str, Remainder]) -> str:
     """The text to print."""
     columns = "|".join(f"{name} mm:9.2f|degrees:7.1f" for name in found)
     rows = [
@@ -283,7 +285,7 @@ def report(found: Mapping[str, Rest]) -> str:
     return "\n".join(lines)
 
 
-def targets(found: Mapping[str, Rest]) -> list[Target]:
+def targets(found: Mapping[str, Remainder]) -> list[Target]:
     """The bounds that the form of a head must keep."""
     fine = found["finer"]
     limits = MOST_DISTANCES.items()

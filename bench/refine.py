@@ -32,7 +32,7 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 from risorius.app.errors import UserError
 from risorius.assets.sheets import make_grid
-from risorius.geometry.arrays import Floats32, Floats64
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.refine_gl import KahlerGl
 from risorius.refine_gl.context import own_context
 from risorius.refine_gl.refined import GpuBuffers
@@ -42,7 +42,6 @@ from .report import processor, table
 from .subjects import SETTLING_FRAMES, settled_positions
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
 
 DEFAULT_MESHES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
@@ -58,7 +57,7 @@ class Load:
     """A mesh, and the positions of its frames."""
 
     name: str
-    faces: Faces
+    faces: Integers32
     rest: Points
     frames: Sequence[Points]
 

@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.topology import boundary_loops
+from risorius.geometry.arrays import Integers32
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
 PointsAndFaces = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.integer[Any]]]
 """Positions (N, 3) and triangles (M, 3)."""
 RefinesFrame = Callable[[Points, float], PointsAndFaces]
@@ -32,12 +32,12 @@ class Method(NamedTuple):
     package: str
     """The distribution that contains it."""
     module: str
-    bind: Callable[[Faces, Points], RefinesFrame]
+    bind: Callable[[Integers32, Points], RefinesFrame]
     has_limit: bool
     """Whether a limit sets the number of triangles; other methods make four of each."""
 
 
-def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> RefinesFrame:
+def _manifold3d(faces: Integers32, rest: Points, adaptive: bool) -> RefinesFrame:
     """Smooth by tangents. Holes are filled for a closed surface; the result is without fillings."""
     manifold3d = import_module("manifold3d")
     lids: list[tuple[int, int, int]] = []
@@ -65,7 +65,7 @@ def _manifold3d(faces: Faces, rest: Points, adaptive: bool) -> RefinesFrame:
     return frame
 
 
-def _meshlib(faces: Faces, rest: Points) -> RefinesFrame:
+def _meshlib(faces: Integers32, rest: Points) -> RefinesFrame:
     """Split the edges with most curvature, and smooth the new points."""
     mrmeshpy = import_module("meshlib.mrmeshpy")
     mrmeshnumpy = import_module("meshlib.mrmeshnumpy")
@@ -88,7 +88,7 @@ def _meshlib(faces: Faces, rest: Points) -> RefinesFrame:
     return frame
 
 
-def _pymeshlab(faces: Faces, rest: Points, rule: str) -> RefinesFrame:
+def _pymeshlab(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
     """Split edges that are longer than the limit, up to three times."""
     pymeshlab = import_module("pymeshlab")
 
@@ -104,7 +104,7 @@ def _pymeshlab(faces: Faces, rest: Points, rule: str) -> RefinesFrame:
     return frame
 
 
-def _vtk(faces: Faces, rest: Points, rule: str) -> RefinesFrame:
+def _vtk(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
     """Run one of VTK's filters for each frame; the filter object is reused."""
     modeling = import_module("vtkmodules.vtkFiltersModeling")
     data = import_module("vtkmodules.vtkCommonDataModel")
@@ -139,7 +139,7 @@ def _vtk(faces: Faces, rest: Points, rule: str) -> RefinesFrame:
     return frame
 
 
-def _libigl(faces: Faces, rest: Points) -> RefinesFrame:
+def _libigl(faces: Integers32, rest: Points) -> RefinesFrame:
     """Multiply by the stored matrix of one level of Loop subdivision."""
     igl = import_module("igl")
     matrix, fine = igl.loop_matrix(faces.astype(np.int64), len(rest))

@@ -29,11 +29,12 @@ from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
+from risorius.geometry.arrays import Integers32
 from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
 from .report import processor, table
-from .rival_libraries import RIVAL_METHODS, Faces, Method, Points, PointsAndFaces, RefinesFrame
+from .rival_libraries import RIVAL_METHODS, Method, Points, PointsAndFaces, RefinesFrame
 from .subjects import Subject
 
 TRIANGLE_RATIO = 4.0
@@ -44,7 +45,7 @@ class Case(NamedTuple):
     """A moved coarse mesh, and points of its true surface."""
 
     surface: str
-    faces: Faces
+    faces: Integers32
     rest: Points
     positions: Points
     truth: Points
@@ -81,23 +82,23 @@ class _Frame:
         return mesh.positions, mesh.triangles
 
 
-def _adaptive(faces: Faces, rest: Points) -> RefinesFrame:
+def _adaptive(faces: Integers32, rest: Points) -> RefinesFrame:
     criterion = refine.Displacement()
     refiner = refine.create("kahler", faces, rest, scheme="cubic", blend=False, criterion=criterion)
     return _Frame(refiner, criterion)
 
 
-def _everywhere(faces: Faces, rest: Points, scheme: str) -> RefinesFrame:
+def _everywhere(faces: Integers32, rest: Points, scheme: str) -> RefinesFrame:
     splits = np.ones(len(refine.create("none", faces, rest).edges), dtype=np.uint8)
     refiner = refine.create("kahler", faces, rest, scheme=scheme, blend=False, splits=splits)
     return _Frame(refiner, None)
 
 
-def _unrefined(faces: Faces, rest: Points) -> RefinesFrame:
+def _unrefined(faces: Integers32, rest: Points) -> RefinesFrame:
     return _Frame(refine.create("none", faces, rest), None)
 
 
-OWN_BINDINGS: Mapping[str, Callable[[Faces, Points], RefinesFrame]] = {
+OWN_BINDINGS: Mapping[str, Callable[[Integers32, Points], RefinesFrame]] = {
     "not refined": _unrefined,
     "cubic where a split moves most": _adaptive,
     "cubic, all edges": partial(_everywhere, scheme="cubic"),

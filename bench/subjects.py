@@ -29,7 +29,6 @@ from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import closest_points
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
 
 MILLIMETRES_PER_CENTIMETRE = 10.0  # per centimetre, the unit of a folder of scans
 DENSE_FILE = "face.npz"
@@ -52,7 +51,7 @@ class Scans:
     """A scanned neutral face, and its displacement in each expression [mm]."""
 
     mesh: Mesh
-    landmarks: Faces
+    landmarks: Integers32
     """Vertex indices of the 68 landmarks."""
     fields: Mapping[str, Points]
     """Expression -> displacement of all vertices, shape (V, 3)."""
@@ -106,8 +105,8 @@ class PosePair:
 class Subject:
     """A face as a dense mesh, a coarse one, and expressions of both."""
 
-    dense_faces: Faces
-    coarse_faces: Faces
+    dense_faces: Integers32
+    coarse_faces: Integers32
     rest: PosePair
     poses: Mapping[str, PosePair]
 

@@ -17,7 +17,7 @@ from risorius import refine
 from risorius.geometry.closest import closest_points
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
+Triangles = npt.NDArray[np.int32]
 
 CELL_COUNT = 8
 CLOTH_SIDE = 2.0  # [m]
@@ -47,7 +47,7 @@ def cloth(cells: int) -> mujoco.MjSpec:
     )
 
 
-def add_skin(spec: mujoco.MjSpec, fine: Points, triangles: Faces) -> None:
+def add_skin(spec: mujoco.MjSpec, fine: Points, triangles: Triangles) -> None:
     """Bind `fine` to the bodies of the coarse vertices, by weights on flat triangles."""
     model = spec.compile()
     rest, faces = sheet_of(model)
@@ -76,7 +76,7 @@ def add_skin(spec: mujoco.MjSpec, fine: Points, triangles: Faces) -> None:
     )
 
 
-def sheet_of(model: mujoco.MjModel) -> tuple[Points, Faces]:
+def sheet_of(model: mujoco.MjModel) -> tuple[Points, Triangles]:
     """Vertices and triangles of the sheet at rest."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)

@@ -15,12 +15,12 @@ import numpy.typing as npt
 from risorius import refine
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
+Triangles = npt.NDArray[np.int32]
 
 TUBE_LENGTH = 8.0
 
 
-def tube() -> tuple[Points, Faces]:
+def tube() -> tuple[Points, Triangles]:
     """A straight tube along y, open at both ends."""
     around = 12  # cells of the tube
     along = 16

@@ -18,7 +18,7 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, CameraView, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
-from .frame import NO_MAPS, DrawnPart, Frame, PlacedPart, Plane, Skin, SkinMaps
+from .frame import NO_MAPS, CutPlane, DrawnPart, Frame, PlacedPart, Skin, SkinMaps
 from .geometry_buffer import Geometry
 from .light_map import LIGHT_MAPS, LightMap
 from .lights import LAMPS, LIGHTS
@@ -45,7 +45,7 @@ from .style import (
     Style,
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
-from .texture import BumpMap, Texture
+from .texture import BumpMap, SkinTexture
 from .window import WindowSurface, open_window
 
 __all__ = [
@@ -66,6 +66,7 @@ __all__ = [
     "CameraView",
     "Colour",
     "ColourBy",
+    "CutPlane",
     "Detail",
     "DrawnPart",
     "Finding",
@@ -82,16 +83,15 @@ __all__ = [
     "Opening",
     "OrbitCamera",
     "PlacedPart",
-    "Plane",
     "Rectangle",
     "Renderer",
     "Shading",
     "Skin",
     "SkinMaps",
+    "SkinTexture",
     "Stream",
     "Style",
     "Surface",
-    "Texture",
     "WindowSurface",
     "open_offscreen",
     "open_window",

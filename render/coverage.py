@@ -6,7 +6,7 @@ from typing import NamedTuple
 import moderngl
 
 from .camera import PlacedView
-from .frame import Plane, Skin
+from .frame import CutPlane, Skin
 from .parts import PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
@@ -28,7 +28,7 @@ class Drawn(NamedTuple):
 
     skin: Skin | None
     parts: Sequence[PlacedBuffers]
-    cut: Plane | None = None
+    cut: CutPlane | None = None
     is_opened: bool = False
     has_triangles: bool = False
     has_normals: bool = True
@@ -72,7 +72,7 @@ class Coverage:
             set_cut(program, view, drawn.cut or NO_CUT, CUT_WIDTH)
         skin.stream.draw(program)
 
-    def _draw_part(self, placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> None:
+    def _draw_part(self, placed: PlacedBuffers, cut: CutPlane | None, view: PlacedView) -> None:
         """Draw a solid part, or the outline of short hair."""
         is_hair = placed.buffers.kind == "SHELLS"
         defines = ["SHELLS"] * is_hair + ["SUNK"] * (cut is not None)

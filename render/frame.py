@@ -15,9 +15,9 @@ from .lines import Lines
 from .opening import Opening
 from .stream import MeshBuffers, UploadedMesh
 from .style import Style
-from .texture import BumpMap, Texture
+from .texture import BumpMap, SkinTexture
 
-Plane = tuple[float, float, float, float]  # (a, b, c, d); a x + b y + c z + d > 0 is in front
+CutPlane = tuple[float, float, float, float]  # (a, b, c, d); a x + b y + c z + d > 0 is in front
 
 
 class DrawnPart(Protocol):
@@ -114,7 +114,7 @@ class SkinMaps:
       `bumps` and of amounts per vertex.
     """
 
-    texture: Texture | None = None
+    texture: SkinTexture | None = None
     bumps: BumpMap | None = None
 
 
@@ -182,7 +182,7 @@ class Frame:
     style: Style
     skin: Skin | None = None
     parts: Sequence[PlacedPart] = ()
-    cut: Plane | None = None
+    cut: CutPlane | None = None
     overlays: Sequence[Lines] = ()
 
     @property

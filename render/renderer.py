@@ -18,7 +18,7 @@ from .camera import PlacedView, box_corners
 from .coverage import SKIN_NUMBERS, Drawn, part_numbers, set_numbers
 from .dense_hair import hide_below
 from .errors import GLError
-from .frame import Frame, Plane, Skin
+from .frame import CutPlane, Frame, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
 from .lines import Lines
 from .materials import (
@@ -295,7 +295,7 @@ class Renderer:
         view: PlacedView,
         shadow: Shadow | None,
         *,
-        cut: Plane | None = None,
+        cut: CutPlane | None = None,
     ) -> None:
         """Draw coloured parts; blended parts come last.
 

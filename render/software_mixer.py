@@ -15,7 +15,7 @@ from ..geometry.arrays import Floats64, Integers32
 from ..geometry.directions import unit_vectors
 from .camera import PlacedView
 from .coverage import SKIN_NUMBERS, Drawn, Numbers, part_numbers
-from .frame import Plane, Skin
+from .frame import CutPlane, Skin
 from .parts import PlacedBuffers
 from .render_target import Rectangle, RenderTarget, around
 from .sample_kernels import (
@@ -109,7 +109,7 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     )
 
 
-def _part_surface(placed: PlacedBuffers, cut: Plane | None, view: PlacedView) -> _Surface:
+def _part_surface(placed: PlacedBuffers, cut: CutPlane | None, view: PlacedView) -> _Surface:
     """Return a solid part; cut: plane in front of which skin hides the part, see sunk.glsl."""
     model_view = placed.part.transform.T @ view.world_to_view
     positions = _multiplied(placed.part.vertices, model_view)[:, :3]

@@ -41,7 +41,7 @@ class _Mipmaps:
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
 
 
-class Texture(_Mipmaps):
+class SkinTexture(_Mipmaps):
     """The albedo of a skin, with ambient occlusion and fine shape.
 
     - redness: median ratio of red to green light; redder texels are lips, which are glossy.

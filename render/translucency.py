@@ -8,13 +8,13 @@ import moderngl
 import numpy as np
 
 from .camera import PlacedView
-from .frame import Frame, Plane, Skin
+from .frame import CutPlane, Frame, Skin
 from .render_target import intersection
 
 CUT_WIDTH = 0.008  # visible thickness of cut skin, as a fraction of the scene's radius
 # Greatest distance that parts may come out of the skin, as a fraction of the scene's radius.
 SUNK_DEPTH = 0.08
-NO_CUT: Plane = 0.0, 0.0, 0.0, -1.0  # no point lies in front of this plane
+NO_CUT: CutPlane = 0.0, 0.0, 0.0, -1.0  # no point lies in front of this plane
 # Blends colours by their opacity; a transparent background collects premultiplied colours.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -58,14 +58,14 @@ def set_translucency(program: moderngl.Program, frame: Frame, view: PlacedView) 
     set_cut(program, view, frame.cut or NO_CUT, CUT_WIDTH)
 
 
-def set_cut(program: moderngl.Program, view: PlacedView, cut: Plane, width: float) -> None:
+def set_cut(program: moderngl.Program, view: PlacedView, cut: CutPlane, width: float) -> None:
     """Set the plane that cuts the skin; width: width of the cut, in radii of the scene."""
     program["cut"] = in_view(cut, view)
     if "cut_width" in program:
         program["cut_width"] = width * view.camera.scene_radius
 
 
-def in_view(plane: Plane, view: PlacedView) -> Plane:
+def in_view(plane: CutPlane, view: PlacedView) -> CutPlane:
     """Transform a plane from the world to view space."""
     a, b, c, d = np.linalg.inv(view.world_to_view) @ plane
     return a, b, c, d

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..schema import quoted
@@ -34,8 +33,6 @@ from .skull import (
     mandible_weight_from_landmarks,
 )
 from .surface import SkinSurface, build_surface
-
-Faces = npt.NDArray[np.int32]
 
 
 class Given(NamedTuple):
@@ -87,7 +84,7 @@ def foundation_of(head: Any) -> Foundation:
     return _face_foundation(vertices, faces, given, rig, landmark_indices)
 
 
-def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) -> Foundation:
+def _plain_foundation(vertices: Floats64, faces: Integers32, given: Given, rig: Rig) -> Foundation:
     """Foundation of a mesh without landmarks: its own jaw and eyes, and no muscles."""
     rig = Rig(rig.tissue, rig.jaw, rig.eyes)
     space = FaceSpace.from_bounds(vertices)
@@ -114,7 +111,7 @@ def _plain_foundation(vertices: Floats64, faces: Faces, given: Given, rig: Rig) 
 
 
 def _face_foundation(
-    vertices: Floats64, faces: Faces, given: Given, rig: Rig, landmark_indices: Integers64
+    vertices: Floats64, faces: Integers32, given: Given, rig: Rig, landmark_indices: Integers64
 ) -> Foundation:
     """Foundation of a face; landmarks give the bones and eyes that the head lacks."""
     space = FaceSpace.from_landmarks(vertices[landmark_indices])

@@ -48,7 +48,7 @@ class Dissection(NamedTuple):
     parts: tuple[render.PlacedPart, ...]
     opacity: float = 1.0
     """Opacity of the skin."""
-    cut: render.Plane | None = None
+    cut: render.CutPlane | None = None
     """In front of this plane, skin is opaque."""
 
 
@@ -182,7 +182,7 @@ def _midline_point(face: Face) -> Any:
     return face.rest_positions[face.head.landmarks[27]]
 
 
-def _cutting_plane(face: Face, view: AnatomyView) -> render.Plane | None:
+def _cutting_plane(face: Face, view: AnatomyView) -> render.CutPlane | None:
     """Return the plane in front of which skin is opaque; None if both sides are translucent."""
     side = SIDE_SIGNS[view.side]
     if not side:

@@ -17,7 +17,7 @@ from .options import (
     SCRIPT_ARGUMENT,
     SETTINGS_OPTION,
     SOUND_OPTION,
-    Drawing,
+    DrawingOptions,
     option,
     packed,
     played,
@@ -104,7 +104,7 @@ class Filming:
             words.pop()
         return ",".join(words) or None, is_turntable
 
-    def _style(self, drawing: Drawing) -> render.Style:
+    def _style(self, drawing: DrawingOptions) -> render.Style:
         """Return the style of pictures, with its background."""
         from risorius import render
 
@@ -124,7 +124,7 @@ class Filming:
     def options(
         self,
         script: Script,
-        drawing: Drawing,
+        drawing: DrawingOptions,
         *,
         is_recorded: bool = False,
         is_still: bool = False,
@@ -170,7 +170,7 @@ class Filming:
 @SCENE_OPTION
 @SOUND_OPTION
 @packed(Filming)
-@packed(Drawing)
+@packed(DrawingOptions)
 def capture(
     script: Path | None,
     settings: tuple[str, ...],
@@ -179,7 +179,7 @@ def capture(
     scene: str | None,
     sound: Path | None,
     filming: Filming,
-    drawing: Drawing,
+    drawing: DrawingOptions,
 ) -> None:
     """Draw SCRIPT as a film, frames, a picture or a contact sheet.
 

@@ -29,7 +29,7 @@ from .options import (
     QUIET_OPTION,
     SCENE_NAMES,
     SOUND_OPTION,
-    Drawing,
+    DrawingOptions,
     option,
     packed,
     played,
@@ -91,7 +91,7 @@ class Live:
 @packed(Live)
 @GAIN_OPTION
 @MIRROR_OPTION
-@packed(Drawing)
+@packed(DrawingOptions)
 def view(
     size: tuple[int, int] | None,
     scene: str | None,
@@ -101,7 +101,7 @@ def view(
     gains: tuple[str, ...],
     mirror: bool,
     quiet: bool,
-    drawing: Drawing,
+    drawing: DrawingOptions,
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
@@ -155,14 +155,14 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND_OPTION
 @QUIET_OPTION
-@packed(Drawing)
+@packed(DrawingOptions)
 def replay(
     script: Path,
     size: tuple[int, int] | None,
     once: bool,
     sound: Path | None,
     quiet: bool,
-    drawing: Drawing,
+    drawing: DrawingOptions,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
     performance = played(script, None, sound=sound, quiet=quiet)
@@ -205,7 +205,7 @@ def convert(
 def open_window(
     performance: Script | None,
     size: tuple[int, int] | None,
-    drawing: Drawing,
+    drawing: DrawingOptions,
     *,
     playing: bool = False,
     once: bool = False,
@@ -264,7 +264,9 @@ def open_window(
             viewer.run(playing=playing, once=once)
 
 
-def fitted_head_of(drawing: Drawing, *, may_be_marked: bool) -> tuple[FittedHead | None, str]:
+def fitted_head_of(
+    drawing: DrawingOptions, *, may_be_marked: bool
+) -> tuple[FittedHead | None, str]:
     """Return the head that the options choose, and a message if its known landmarks do not fit.
 
     The head is None for the built-in head, and for a head whose landmarks may still be marked.

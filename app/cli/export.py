@@ -13,7 +13,15 @@ from ..export.formats import MOTION_FORMATS, ExportRequest, check_request, forma
 from ..export.formats import export as write
 from ..text import in_one_line
 from .help import GroupedCommand
-from .options import SCENE_OPTION, SCRIPT_ARGUMENT, SETTINGS_OPTION, Subject, option, packed, played
+from .options import (
+    SCENE_OPTION,
+    SCRIPT_ARGUMENT,
+    SETTINGS_OPTION,
+    HeadOptions,
+    option,
+    packed,
+    played,
+)
 from .value_types import PATH_TYPE, FiniteRange
 
 if TYPE_CHECKING:
@@ -70,14 +78,14 @@ class Exporting:
 )
 @SCENE_OPTION
 @packed(Exporting)
-@packed(Subject)
+@packed(HeadOptions)
 def export(
     script: Path | None,
     settings: tuple[str, ...],
     output: Path,
     scene: str | None,
     exporting: Exporting,
-    subject: Subject,
+    subject: HeadOptions,
 ) -> None:
     """Write the motion of SCRIPT for other programs.
 

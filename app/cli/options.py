@@ -88,7 +88,7 @@ def packed(
 
 
 @dataclass(frozen=True)
-class Subject:
+class HeadOptions:
     """Options that choose the head, and how its mesh is refined."""
 
     head: Path | int | str | None = option(
@@ -160,7 +160,7 @@ class Subject:
 
 
 @dataclass(frozen=True)
-class Drawing(Subject):
+class DrawingOptions(HeadOptions):
     """Options that view, replay and capture share: the head, its refinement and its style."""
 
     anatomy: str | None = option(

@@ -127,7 +127,7 @@ class Sides(Record):
 
 
 @dataclass(frozen=True)
-class Eyes(Record):
+class EyeMotion(Record):
     """Probabilities of a blink and of a look into the camera; spread of the gaze [degrees]."""
 
     blink: Fraction
@@ -190,7 +190,7 @@ class SampleTable(Record):
     excluded: Excluded
     speech: Annotated[Weights, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides
-    eyes: Eyes
+    eyes: EyeMotion
     head: HeadTurn
     camera: Camera
     persons: Persons

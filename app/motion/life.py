@@ -33,7 +33,7 @@ from risorius.geometry.arrays import Floats64
 from ..control_names.angles import FULL_ANGLES, GAZE_ANGLE
 from ..scenes import Face, Scene
 
-Values = dict[str, float]
+IdleValues = dict[str, float]
 GlancePlace = tuple[float, float]  # to the left and up [degrees]
 
 
@@ -57,7 +57,7 @@ class Life:
         """seed: faces with different seeds blink and glance at different times."""
         self._seed = seed
 
-    def parts(self, time: float) -> dict[str, Values]:
+    def parts(self, time: float) -> dict[str, IdleValues]:
         """Return amounts to add to controls at `time` [s], grouped into lids, eyes and head.
 
         Controls that are not named get 0.
@@ -131,7 +131,7 @@ class Life:
         return [float(each) for each in drifts]
 
 
-def _both_sides(name: str, value: float) -> Values:
+def _both_sides(name: str, value: float) -> IdleValues:
     sides = "left", "right"
     return {f"{name}_{side}": value for side in sides}
 
@@ -166,7 +166,7 @@ class Idle:
         *,
         is_still: bool = False,
         opening: float = 0.0,
-    ) -> Values:
+    ) -> IdleValues:
         """Return amounts to add to the scene's controls at `time` [s].
 
         moved: lowest controls (sim/layers.py) that something else moves. viewer: position of the
@@ -193,7 +193,7 @@ class Idle:
         }
 
 
-def looking_at(face: Face, viewer: Floats64) -> dict[str, Values]:
+def looking_at(face: Face, viewer: Floats64) -> dict[str, IdleValues]:
     """Return values of gaze and head with which a face looks at a point [mm], shape (3,).
 
     The eyes compensate for the current turn of the head. Values are grouped as in `Life.parts`.

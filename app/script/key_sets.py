@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from risorius.geometry.arrays import Flags
 
-Times = npt.NDArray[np.float64]  # [s], shape (K,), rising
-NO_TIMES: Times = np.empty(0)
+KeyTimes = npt.NDArray[np.float64]  # [s], shape (K,), rising
+NO_TIMES: KeyTimes = np.empty(0)
 
 
 class KeyId(NamedTuple):
@@ -24,7 +24,7 @@ class KeyId(NamedTuple):
 class KeySet(Set[KeyId]):
     """An immutable set of keys: the times of its keys in each track."""
 
-    def __init__(self, times: Mapping[str, Times]) -> None:
+    def __init__(self, times: Mapping[str, KeyTimes]) -> None:
         """times: name of the track -> times [s], strictly rising."""
         self.times = {name: each for name, each in times.items() if len(each)}
 
@@ -54,7 +54,7 @@ class KeySet(Set[KeyId]):
         """The earliest time [s]; the set must not be empty."""
         return min(float(each[0]) for each in self.times.values())
 
-    def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
+    def latest_in(self, edges: KeyTimes, names: Iterable[str]) -> KeyTimes:
         """Return the latest key time [s] in each interval of `edges`; omit intervals without keys.
 
         names: tracks whose keys count.
@@ -64,7 +64,7 @@ class KeySet(Set[KeyId]):
             first = np.searchsorted(times, edges)  # the first key at or after each edge
             has_key = first[1:] > first[:-1]
             latest[has_key] = np.maximum(latest[has_key], times[first[1:][has_key] - 1])
-        found: Times = latest[np.isfinite(latest)]
+        found: KeyTimes = latest[np.isfinite(latest)]
         return found
 
     def nearest(self, time: float, reach: float) -> KeySet:
@@ -92,7 +92,9 @@ class KeySet(Set[KeyId]):
     def __sub__(self, other: Set[Any]) -> KeySet:
         return self._combined(other, np.setdiff1d)
 
-    def _combined(self, other: Set[Any], combine: Callable[[Times, Times], Times]) -> KeySet:
+    def _combined(
+        self, other: Set[Any], combine: Callable[[KeyTimes, KeyTimes], KeyTimes]
+    ) -> KeySet:
         second = other if isinstance(other, KeySet) else KeySet.from_keys(*other)
         other_times = second.times
         return KeySet(
@@ -114,7 +116,7 @@ class KeySet(Set[KeyId]):
 NO_KEYS = KeySet({})
 
 
-def is_any_of(times: Times, others: Times, reach: float = 0.0) -> Flags:
+def is_any_of(times: KeyTimes, others: KeyTimes, reach: float = 0.0) -> Flags:
     """Return which times are within `reach` [s] of one of the others."""
     if not len(others):
         return np.zeros(len(times), np.bool_)

@@ -26,7 +26,6 @@ EQUAL_TOLERANCE = 1e-6  # values, or times [s], that differ by less are equal
 
 # The keys of a track as arrays: times [s], then values and easings, or the poses.
 KeyColumns = tuple[npt.NDArray[Any], ...]
-Values = Mapping[str, float]
 ScriptAndKeys = tuple[Script, KeySet]  # a script, and some of its keys
 
 
@@ -217,7 +216,7 @@ def with_keys_of(
     return _extended_to(_with_track_keys(script, time, keys), time)
 
 
-def _with_track_keys(script: Script, time: float, values: Values) -> Script:
+def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -> Script:
     """Add a key at `time` [s] to each of these tracks; make missing tracks."""
     changed = {}
     for name, value in values.items():

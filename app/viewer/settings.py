@@ -102,7 +102,7 @@ def _refiners() -> list[str | None]:
 
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
-Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
+WindowSize = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
 Fraction = Annotated[float, Within(0.0, 1.0)]
 Option = Annotated[Any, MadeFrom(Any, _option)]  # value of an option; the refiner checks it further
 
@@ -228,7 +228,7 @@ class Settings(Record):
 
     ZOOMS = 0.6, 3.0  # least and greatest zoom
 
-    size: Size = None  # size of the window [screen units]
+    size: WindowSize = None  # size of the window [screen units]
     theme: Annotated[str, OneOf(THEMES)] = "light"
     zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # scale of words and sliders
     is_linked: Flag = True  # whether sliders of both sides are linked

@@ -30,7 +30,7 @@ from .furrows import (
     forehead_lines,
     frown_lines,
 )
-from .lines import Lines
+from .lines import ExpressionLines
 from .relief import add_to
 
 FULL_DEPTH = 0.8  # [mm]; depth of a furrow that the map stores as 255
@@ -73,7 +73,7 @@ class _Places(NamedTuple):
     folds: tuple[_Fold, ...]
 
 
-def with_lines(known: Wrinkles, lines: Lines, shrink: int = 1) -> Wrinkles:
+def with_lines(known: Wrinkles, lines: ExpressionLines, shrink: int = 1) -> Wrinkles:
     """Draw the lines of a person into wrinkles; shrink: factor on width and height of the map."""
     places = _line_regions(shrink)
     found = places.plain.copy()

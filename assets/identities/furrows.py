@@ -13,7 +13,7 @@ import numpy as np
 
 from ...geometry.arrays import Floats64
 from ..smooth import smooth_step
-from .lines import Fan, Lines, Spread
+from .lines import ExpressionLines, Fan, Spread
 
 SAMPLE_SPACING = 0.5  # [mm] between samples along a line
 FOREHEAD_REACH = -62.0, 62.0  # [mm]; x of the first and the last sample
@@ -44,7 +44,7 @@ class FurrowLine(NamedTuple):
     swelling: float
 
 
-def forehead_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
+def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random lines of the forehead; some are broken into two halves of unequal height."""
     x = _sample_coordinates(FOREHEAD_REACH)
     # [mm] above the root of the nose, along the skin.
@@ -101,7 +101,7 @@ def _line_strength(spread: Spread, beside: Floats64, random: np.random.Generator
             return random.uniform(0.0, 0.3) + 0.7 * smooth_step(6.0 * reach, 28.0 * reach, beside)
 
 
-def frown_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
+def frown_lines(lines: ExpressionLines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random upright lines between the brows, which diverge upward."""
     y = _sample_coordinates(GLABELLA_REACH)
     places = {1: (0.0,), 2: (-5.6, 5.6), 3: (-7.2, 0.4, 6.8)}[lines.frown]
@@ -122,7 +122,7 @@ def frown_lines(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
     return found
 
 
-def crows_feet(lines: Lines, random: np.random.Generator) -> list[FurrowLine]:
+def crows_feet(lines: ExpressionLines, random: np.random.Generator) -> list[FurrowLine]:
     """Choose random crow's feet of one side; some of them fork."""
     radius = _sample_coordinates(FEET_REACH)
     low, high = FAN_ANGLES[lines.fan]

@@ -39,7 +39,7 @@ class Fan(Enum):
     UPPER = "upper"
 
 
-class Lines(NamedTuple):
+class ExpressionLines(NamedTuple):
     """The expression lines of a person; all depths are relative to the built-in head's.
 
     - seed: seed for the courses and the breaks of lines.
@@ -72,7 +72,7 @@ class Lines(NamedTuple):
     fine: int
 
 
-def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
+def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> ExpressionLines:
     """Choose random lines for a person of this sex and age [years]."""
     seed = int(random.integers(2**31))
     spread, frown, fan, dip, broken, uneven, reach = random.uniform(0.0, 1.0, 7).tolist()
@@ -90,7 +90,7 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Lines:
     furrow_count = np.rint(3.1 + 1.3 * late + 1.1 * count)
     feet_count = np.rint(3.6 + 1.8 * late + 0.9 * feet)
     kinds_of_fan = (Fan.WHOLE, Fan.LOWER, Fan.UPPER, Fan.CENTRAL)
-    return Lines(
+    return ExpressionLines(
         seed=seed,
         forehead=int(np.clip(furrow_count, 1, 6)),
         spread=tuple(Spread)[int((spread > spreads).sum())],

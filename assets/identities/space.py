@@ -37,7 +37,7 @@ from ...geometry.directions import unit_vectors
 from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, NormSample, measures_of
-from .lines import Lines, drawn_lines
+from .lines import ExpressionLines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
 
@@ -105,7 +105,7 @@ class Identity:
     smile: Smile = USUAL_SMILE
     larynx: float = 0.0
     sternomastoid: float = 0.0
-    lines: Lines | None = None
+    lines: ExpressionLines | None = None
 
     def scaled(self, factor: float) -> Identity:
         """Scale the shape's differences from the mean of people by `factor`; 0 gives the mean."""

@@ -37,14 +37,14 @@ LOOK_COLUMNS = (STATIC_REFINER, PAPERS_PRESET, FIRST_PRESET)
 
 
 @dataclass(frozen=True)
-class Cell(ComparedPicture):
+class LookCell(ComparedPicture):
     """The picture of one expression in one look, and flags of the head's pixels, (H, W)."""
 
     is_head: Flags
     smoother: float
     """Angle between neighbouring triangles at split edges, relative to the mesh there."""
 
-    def wrong(self, truth: Cell) -> int:
+    def wrong(self, truth: LookCell) -> int:
         """Number of pixels that show the head here or in truth, but not in both."""
         return int((self.is_head != truth.is_head).sum())
 
@@ -90,7 +90,7 @@ def outcome(size: tuple[int, int] = (300, 360)) -> Outcome:
     return Outcome(values, image_table(rows))
 
 
-def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
+def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[LookCell]]]:
     """Draw every expression in every look; the last cell of an expression is the dense mesh."""
     head = assets.load("head")
     level = 2  # the finer head with 16 times the triangles
@@ -122,7 +122,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 is_head = (pictures[0] == pictures[1]).all(axis=2)
                 drawn = canvas.mesh_of(refiner)
                 smoother = _smoother(drawn, now[kept])
-                cells.append(Cell(drawn.triangle_count, pictures[0], is_head, smoother))
+                cells.append(LookCell(drawn.triangle_count, pictures[0], is_head, smoother))
             yield expression, cells
 
 

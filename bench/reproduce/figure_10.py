@@ -75,17 +75,17 @@ class Viewpoint:
 
 
 @dataclass(frozen=True)
-class Cell(ComparedPicture):
+class VariantCell(ComparedPicture):
     """The picture of one expression in one variant."""
 
     title: str
     kinds: Unsigned8  # skin, mouth, background; SUPERSAMPLING times as fine, (H, W)
 
-    def wrong(self, truth: Cell) -> Flags:
+    def wrong(self, truth: VariantCell) -> Flags:
         """Flags of fine pixels in which only one of both pictures shows the mouth's opening."""
         return np.asarray((self.kinds == MOUTH_CHANNEL) != (truth.kinds == MOUTH_CHANNEL))
 
-    def opening(self, truth: Cell) -> Image:
+    def opening(self, truth: VariantCell) -> Image:
         """The picture of the opening."""
         # by kind: skin, mouth, background
         opening_colours = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)
@@ -134,7 +134,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     return Outcome(values, image_table(rows))
 
 
-def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
+def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[VariantCell]]]:
     """Draw every expression in every variant; the last cell of an expression is the dense mesh."""
     scene = FaceScene()
     head = assets.load("head")
@@ -180,7 +180,7 @@ def _draw_cells(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
                 )
                 of_kind = kinds.argmax(axis=2).astype(np.uint8)
                 triangles = canvas.mesh_of(refiner).triangle_count
-                cells.append(Cell(triangles, _reduced_picture(smooth), title, of_kind))
+                cells.append(VariantCell(triangles, _reduced_picture(smooth), title, of_kind))
             yield viewpoint.expression, cells
 
 

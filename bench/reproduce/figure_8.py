@@ -20,14 +20,13 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
-from risorius.geometry.arrays import Flags
+from risorius.geometry.arrays import Flags, Integers32
 from risorius.geometry.directions import unit_vectors
 
 from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int32]
 
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
@@ -90,7 +89,7 @@ class Shapes(NamedTuple):
         return f"smallest angle {self.smallest_angle:.0f}°, {self.off_fold:.0f}° off the fold"
 
 
-def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
+def measure(refiner: refine.Refiner, faces: Integers32, positions: Points) -> tuple[Shapes, Shapes]:
     """Measure the split triangles in folds, and the subtriangles that replace them.
 
     This refines `positions` (V, 3) again.
@@ -104,7 +103,7 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
     return before, _shapes(corners[is_part], directions[mesh.source[is_part]])
 
 
-def find_folds(faces: Faces, positions: Points) -> tuple[Points, Flags]:
+def find_folds(faces: Integers32, positions: Points) -> tuple[Points, Flags]:
     """Direction of least curvature of each triangle (F, 3), and flags of triangles in folds."""
     static = refine.create("none", faces, positions).refine(positions)
     corners = static.positions.astype(np.float64)[static.triangles]

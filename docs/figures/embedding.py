@@ -11,7 +11,8 @@ import numpy as np
 from risorius import refine, render
 from risorius.app.pictures import Image
 from risorius.bench.canvas import Canvas, Drawing
-from risorius.bench.embedding import Faces, FlatBinding, Points, sheet
+from risorius.bench.embedding import FlatBinding, Points, sheet
+from risorius.geometry.arrays import Integers32
 
 
 def folded(points: Points) -> Points:
@@ -41,7 +42,7 @@ def embedding() -> Image:
     return figures.sheet(cells, columns=2)
 
 
-def drawn(positions: Points, faces: Faces) -> Image:
+def drawn(positions: Points, faces: Integers32) -> Image:
     """A sheet, seen obliquely from above."""
     upright = 60.0 * positions[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     camera = render.OrbitCamera.framing(upright)

@@ -19,7 +19,7 @@ from risorius.app.scenes import FaceScene
 from risorius.geometry.normals import vertex_normals
 
 Points = npt.NDArray[np.float64]
-Faces = npt.NDArray[np.int64]
+Triangles = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,12 @@ class Maker:
         place: Points = self.scene.rest_positions[self.scene.landmarks[number]]
         return place
 
-    def part(self, name: str) -> tuple[Points, Faces]:
+    def part(self, name: str) -> tuple[Points, Triangles]:
         """A part of the built-in head."""
         part = next(each for each in self.scene.parts if each.name == name)
         return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
 
-    def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Faces]:
+    def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Triangles]:
         """A piece at this distance outside selected skin."""
         points = self.scene.rest_positions
         faces = self.scene.faces
@@ -46,7 +46,7 @@ class Maker:
         normals = vertex_normals(points, faces)
         return points[used] + off * normals[used], number.reshape(-1, 3)
 
-    def ball(self, side: str, share: float, forward: float) -> tuple[Points, Faces]:
+    def ball(self, side: str, share: float, forward: float) -> tuple[Points, Triangles]:
         """A ball in an eye with this fraction of its radius, moved forward by fractions of it."""
         eye = next(each for each in self.scene.face.head.eyes if each.name == side)
         ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
@@ -54,7 +54,7 @@ class Maker:
         return np.asarray(ball.vertices) + centre, np.asarray(ball.faces)
 
 
-def beard(maker: Maker) -> tuple[Points, Faces]:
+def beard(maker: Maker) -> tuple[Points, Triangles]:
     """A copy of the skin of chin and jaw, with long hairs below."""
     points = maker.scene.rest_positions
     lip = maker.landmark(57)[1]
@@ -65,7 +65,7 @@ def beard(maker: Maker) -> tuple[Points, Faces]:
     return shell, faces
 
 
-def sideburns(maker: Maker) -> tuple[Points, Faces]:
+def sideburns(maker: Maker) -> tuple[Points, Triangles]:
     """A full beard from the ears to the chin, without the lips."""
     points = maker.scene.rest_positions
     is_lip = (np.abs(points[:, 0]) < 27.0) & (points[:, 1] < maker.landmark(33)[1] - 4.0)
@@ -74,7 +74,7 @@ def sideburns(maker: Maker) -> tuple[Points, Faces]:
     return maker.shell(is_low & (points[:, 1] > maker.landmark(8)[1] - 8.0), 1.5)
 
 
-def bow_tie(maker: Maker) -> tuple[Points, Faces]:
+def bow_tie(maker: Maker) -> tuple[Points, Triangles]:
     """A knot that touches the throat below the chin, in front of the jaw."""
     points = maker.scene.rest_positions
     chin = maker.landmark(8)
@@ -85,7 +85,7 @@ def bow_tie(maker: Maker) -> tuple[Points, Faces]:
     return np.asarray(knot.vertices) + front + np.array([0.0, 0.0, 0.5 * depth]), knot.faces
 
 
-def glasses(maker: Maker) -> tuple[Points, Faces]:
+def glasses(maker: Maker) -> tuple[Points, Triangles]:
     """Two rims and a bridge in front of the eyes; the bridge touches the nose."""
     ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
     rims = []
@@ -99,7 +99,7 @@ def glasses(maker: Maker) -> tuple[Points, Faces]:
     return np.vstack([*rims, bridge]), faces
 
 
-def deep_tongue(maker: Maker) -> tuple[Points, Faces]:
+def deep_tongue(maker: Maker) -> tuple[Points, Triangles]:
     """A tongue whose root reaches down into the throat."""
     points, faces = maker.part("tongue")
     share = (points[:, 2].max() - points[:, 2]) / np.ptp(points[:, 2])
@@ -108,7 +108,7 @@ def deep_tongue(maker: Maker) -> tuple[Points, Faces]:
     return points, faces
 
 
-def incisor(maker: Maker) -> tuple[Points, Faces]:
+def incisor(maker: Maker) -> tuple[Points, Triangles]:
     """An upper tooth with a long root, as a piece of its own."""
     points, _ = maker.part("teeth_upper")
     front = points[points[:, 2].argmax()]
@@ -135,7 +135,7 @@ PIECE_CASES = {
 }
 
 
-def pieces_with(scene: FaceScene, own: tuple[Points, Faces], name: str = "") -> list[FilePiece]:
+def pieces_with(scene: FaceScene, own: tuple[Points, Triangles], name: str = "") -> list[FilePiece]:
     """The pieces of a file with the built-in skin and another piece."""
     points, faces = own
     count = len(scene.rest_positions)

@@ -4,14 +4,14 @@ import numpy as np
 from numpy.linalg import norm
 
 from risorius.assets.model import Head, Part
-from risorius.assets.topology import Edge, Faces
+from risorius.assets.topology import Edge
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.mesh_graph import pieces_of
 from risorius.geometry.normals import cross_products
 from risorius.geometry.sides import sides_of
 
 
-def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
+def edge_faces(faces: Integers32) -> dict[Edge, list[int]]:
     """Numbers of the faces at each undirected edge, in the order of the face list."""
     result: dict[Edge, list[int]] = {}
     for index, (a, b, c) in enumerate(faces.tolist()):

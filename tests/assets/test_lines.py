@@ -9,10 +9,10 @@ from numpy.testing import assert_array_equal
 
 from risorius.assets.identities import Sex, coloured, make_person, sample_identity
 from risorius.assets.identities.furrow_map import _line_regions, shared_map, with_lines
-from risorius.assets.identities.lines import Fan, Lines, Spread
+from risorius.assets.identities.lines import ExpressionLines, Fan, Spread
 from risorius.assets.loading import load
 
-PLAIN_LINES = Lines(
+PLAIN_LINES = ExpressionLines(
     seed=5,
     forehead=4,
     spread=Spread.WHOLE,
@@ -31,7 +31,7 @@ PLAIN_LINES = Lines(
 )
 
 
-def people(age: float, sex: Sex | None = None) -> list[Lines]:
+def people(age: float, sex: Sex | None = None) -> list[ExpressionLines]:
     """The lines of two hundred persons of one age."""
     return [sample_identity(seed, age=age, sex=sex).lines for seed in range(200)]
 

@@ -9,7 +9,7 @@ from risorius.bench.human import (
     MOST_DISTANCES,
     HeadMesh,
     IdentitySpace,
-    Rest,
+    Remainder,
     report,
     targets,
     unexplained,
@@ -71,8 +71,8 @@ def test_a_bump_that_nobody_has_is_reported_where_it_is(space):
 def test_what_is_left_is_held_to_targets():
     """A residual above its target and a missing number both miss the target."""
     names = ("all", "nose", "mouth")
-    good = Rest(np.ones(2), dict.fromkeys(names, 0.3), {"all": 3.0})
-    bad = Rest(np.ones(2), {**good.distances, "nose": float("nan")}, {"all": 6.0})
+    good = Remainder(np.ones(2), dict.fromkeys(names, 0.3), {"all": 3.0})
+    bad = Remainder(np.ones(2), {**good.distances, "nose": float("nan")}, {"all": 6.0})
     missed = [each.text for each in targets({"coarse": good, "finer": bad}) if not each.is_met]
     assert len(missed) == 2
     assert "nose" in missed[0]

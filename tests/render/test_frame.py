@@ -34,7 +34,7 @@ def frames_of(renderer):
     bumps = render.BumpMap(
         renderer.surface, np.full((8, 8, 4), FURROWED_RECTANGLE, np.uint8), 100.0
     )
-    texture = render.Texture(renderer.surface, np.full((8, 8, 3), (200, 90, 30), np.uint8))
+    texture = render.SkinTexture(renderer.surface, np.full((8, 8, 3), (200, 90, 30), np.uint8))
     values = np.arange(len(shape.triangles), dtype=np.uint8) % 7
     shaded = replace(PLAIN_STYLE, shadows=True)
     tinted = replace(shaded, colour_by=render.ColourBy.SPLITS, background=render.DARK)

@@ -53,7 +53,7 @@ def draw_all(surface):
     stream.triangles[:] = shape.triangles
     stream.vertices[:, 8:10] = np.linspace(0.0, 1.0, 2 * len(shape.positions)).reshape(-1, 2)
     stream.upload(len(shape.positions), len(shape.triangles), has_bumps=True)
-    texture = render.Texture(renderer.surface, np.full((8, 8, 3), 200, np.uint8))
+    texture = render.SkinTexture(renderer.surface, np.full((8, 8, 3), 200, np.uint8))
     bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), 128, np.uint8), 1.0)
     values = np.arange(len(shape.triangles), dtype=np.uint8)
     styles = [

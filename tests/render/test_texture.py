@@ -46,7 +46,7 @@ def textured(
         stream.vertices[:, [10, 14]] = 0.01  # u grows along x, v along y
     stream.upload(len(shape.positions), len(shape.triangles))
     fine = None if fine_shape is None else renderer.bump_map(*fine_shape, channels=2)
-    texture = render.Texture(renderer.surface, image, occlusion, fine, oil)
+    texture = render.SkinTexture(renderer.surface, image, occlusion, fine, oil)
     skin = render.Skin(stream, render.SkinMaps(texture), values=values)
     return draw(renderer, skin, style)
 
@@ -218,7 +218,7 @@ def test_back_faces_keep_the_inner_albedo(surface):
 def test_texture_needs_eight_columns(renderer):
     """A stream without texture coordinates is refused for a texture."""
     stream = lent(renderer, square())
-    texture = render.Texture(renderer.surface, quarters())
+    texture = render.SkinTexture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
         render.Skin(stream, render.SkinMaps(texture))
 
@@ -236,13 +236,13 @@ def test_texture_needs_eight_columns(renderer):
 def test_bad_images(surface, image, message):
     """Images that are not 8-bit RGB, or are too large, are refused."""
     with pytest.raises(ValueError, match=message):
-        render.Texture(surface, image)
+        render.SkinTexture(surface, image)
 
 
 def test_occlusion_of_another_size_is_refused(surface):
     """Ambient occlusion needs the size of the image, beyond which memory would be read."""
     with pytest.raises(ValueError, match=r"occlusion has shape \(4, 4\); it must be \(8, 8\)"):
-        render.Texture(surface, plain_image((180, 140, 120)), np.zeros((4, 4), np.uint8))
+        render.SkinTexture(surface, plain_image((180, 140, 120)), np.zeros((4, 4), np.uint8))
 
 
 @pytest.mark.parametrize("shading", render.Shading)

@@ -21,7 +21,7 @@ from risorius.geometry.arrays import Floats64
 from ...control_names.limits import ControlValues
 from ...errors import UserError
 from ...motion import opening_of_jaw
-from ...motion.life import Idle, Values
+from ...motion.life import Idle, IdleValues
 from .session import Session
 
 STEP_TIME = 1.0 / 60.0  # [s], as in films and tests; the simulation divides it further
@@ -247,7 +247,7 @@ class IdleLife:
         is_moved = session.is_recording or (is_in_script and not lives)
         return not (is_moved or session.live_override.is_on) and self._without_input < SLEEP_DELAY
 
-    def after(self, seconds: float, *, is_held: bool) -> Values:
+    def after(self, seconds: float, *, is_held: bool) -> IdleValues:
         """Return the values to add to the controls, `seconds` after the last call.
 
         is_held: whether the user holds something, so that the face only looks at the user.
