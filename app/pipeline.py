@@ -93,7 +93,7 @@ class Pipeline:
         style: render.Style,
         viewport: Viewport,
         seen: Dissection | None = None,
-        overlays: Sequence[render.Lines] = (),
+        overlays: Sequence[render.Lines | render.Shade] = (),
     ) -> render.Frame:
         """Return the renderer's frame of an uploaded mesh; seen: None for opaque skin."""
         drawn, area, clip = viewport
@@ -122,12 +122,12 @@ class Pipeline:
         viewports: Sequence[Viewport],
         *,
         anatomy: AnatomyView = SKIN_ALONE,
-        overlays: Sequence[render.Lines] = (),
+        overlays: Sequence[render.Lines | render.Shade] = (),
         timer: Timer = nullcontext,
     ) -> None:
         """Refine, upload and draw the mesh of each viewport: the lower half of the figure.
 
-        overlays: lines over every viewport. timer: measures "refinement", "upload" and "draw".
+        overlays: drawn over every viewport. timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
             wrinkling = None

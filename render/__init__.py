@@ -27,6 +27,7 @@ from .opening import Opening
 from .probe import Finding, probe
 from .render_target import Rectangle
 from .renderer import Renderer
+from .shade import Shade
 from .stream import GpuStream, Stream
 from .style import (
     BLACK,
@@ -85,6 +86,7 @@ __all__ = [
     "PlacedPart",
     "Rectangle",
     "Renderer",
+    "Shade",
     "Shading",
     "Skin",
     "SkinMaps",

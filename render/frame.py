@@ -1,4 +1,4 @@
-"""All inputs of a picture as a value: view, style, mesh, parts and lines.
+"""All inputs of a picture as a value: view, style, mesh, parts and overlays.
 
 `Renderer.draw` draws frames; the same frame always gives the same picture. Parts keep the shape
 that they had when the frame was made. The mesh lies in the buffers of a stream, so a frame can be
@@ -13,6 +13,7 @@ from ..geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 from .camera import CameraView
 from .lines import Lines
 from .opening import Opening
+from .shade import Shade
 from .stream import MeshBuffers, UploadedMesh
 from .style import Style
 from .texture import BumpMap, SkinTexture
@@ -175,7 +176,7 @@ class Frame:
 
     - style: shading, colours, background, and opacity of the skin.
     - cut: plane; in front of it a translucent skin is opaque.
-    - overlays: lines that are drawn over everything.
+    - overlays: lines and shades that are drawn over everything.
     """
 
     view: CameraView
@@ -183,7 +184,7 @@ class Frame:
     skin: Skin | None = None
     parts: Sequence[PlacedPart] = ()
     cut: CutPlane | None = None
-    overlays: Sequence[Lines] = ()
+    overlays: Sequence[Lines | Shade] = ()
 
     @property
     def is_opened(self) -> bool:

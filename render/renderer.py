@@ -14,13 +14,12 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from .backdrop import Backdrop
-from .camera import PlacedView, box_corners
+from .camera import PlacedView
 from .coverage import SKIN_NUMBERS, Drawn, part_numbers, set_numbers
 from .dense_hair import hide_below
 from .errors import GLError
 from .frame import CutPlane, Frame, Skin
 from .geometry_buffer import Geometry, GeometryBuffer
-from .lines import Lines
 from .materials import (
     mesh_shader,
     part_shader,
@@ -30,6 +29,7 @@ from .materials import (
     value_texture,
 )
 from .opening import RIM_DEFINE, set_rim
+from .overlays import OverlayPainter
 from .parts import PartStore, PlacedBuffers
 from .programs import compile_program, write_uniform
 from .render_target import RenderTarget
@@ -69,6 +69,7 @@ class Renderer:
         self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
         self._mixer: Mixer | None = None
+        self._overlays = OverlayPainter(surface, self._program)
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of limited numbers of vertices and triangles (see `Stream`)."""
@@ -142,7 +143,7 @@ class Renderer:
         return PlacedView(frame.view, self.surface.target.size, self.surface.scale)
 
     def _draw(self, frame: Frame, view: PlacedView) -> None:
-        """Draw skin, parts and lines in the order that depth tests and blending need.
+        """Draw skin, parts and overlays in the order that depth tests and blending need.
 
         Solid parts come before a translucent skin, which shows them. All other parts come after
         the skin, because they need its shadow and depths. Hair and other fibres come last.
@@ -162,8 +163,8 @@ class Renderer:
             self._draw_skin(frame, view, shadow)
         self._draw_parts(later, frame.style, view, shadow)
         self._smooth(frame, view, parts, with_skin=True)
-        for lines in frame.overlays:
-            self._draw_lines(lines, view)
+        for overlay in frame.overlays:
+            self._overlays.draw(overlay, view)
 
     def _smooth(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool
@@ -329,29 +330,6 @@ class Renderer:
                 continue
             with blending(self._gl) if buffers.is_mixed else nullcontext():
                 buffers.draw(program)
-
-    def _draw_lines(self, lines: Lines, view: PlacedView) -> None:
-        """Draw polylines over the scene; they shine through surfaces in front of them."""
-        program = self._program("lines.glsl")
-        rows, segments = lines.segments()
-        if not len(segments):
-            return
-        width = lines.width * self._line_scale
-        write_uniform(program, "world_to_clip", view.world_to_clip)
-        program["viewport_size"] = view.viewport[2:]
-        program["half_width"] = 0.5 * width
-        covered = view.covered_pixels(box_corners(rows[:, :3]), 2.0 + width)
-        if min(covered[2:]) <= 0:
-            return
-        self.surface.target.use(view.viewport, covered)
-        content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
-        drawn = self._gl.vertex_array(program, content, self._gl.buffer(segments))
-        with blending(self._gl):
-            for depth_func, opacity in ((">", lines.hidden_opacity), ("<=", lines.opacity)):
-                if opacity > 0.0:
-                    self._gl.depth_func = depth_func
-                    program["opacity"] = opacity
-                    drawn.render(moderngl.LINES)
 
     @property
     def _line_scale(self) -> float:

@@ -13,11 +13,11 @@ from typing import Any
 from .face import Simulation, SimulationUnstable
 from .face_model import build_face_model
 from .foundation import controls_of
-from .pulling import Pull
+from .pulling import Pull, motion_of
 from .rig import Rig, read_rig
 
 __all__ = ["Pull", "Rig", "Simulation", "SimulationUnstable"]
-__all__ += ["controls_of", "create", "read_rig"]
+__all__ += ["controls_of", "create", "motion_of", "read_rig"]
 
 
 def create(head: Any) -> Simulation:

@@ -269,7 +269,7 @@ class Pull:
         moved = []
         for names in candidates:
             self._probe.copy_from(self._base)
-            self._probe.jump(self._shifted(names, 1.0))
+            self._probe.jump(_shifted(self._base, names, 1.0))
             self._probe.step(STEP_LENGTH)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         most_candidates = 16  # number of examined controls: those that move the finger's skin most
@@ -285,23 +285,12 @@ class Pull:
         """Mean square distance of vertices (V, 3) under the finger from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
-    def _shifted(self, names: Names, fraction: float) -> dict[str, float]:
-        """Values of controls moved up by a share of their range, or down without room above."""
-        low, high = self._base.controls.limits[names[0]]
-        value = self._base.controls.values[names[0]]
-        step = fraction * (high - low)
-        moved = value + step if value + step <= high else max(value - step, low)
-        return dict.fromkeys(names, moved)
-
     def _measure(self, which: npt.ArrayLike) -> None:
         """Slopes of the skin in the controls with these indices, at the current values."""
         probe_fraction = 0.25  # of a control's range, to measure its slope
         for n in np.asarray(which, np.int64):
-            moved = self._shifted(self.candidates[n], probe_fraction)
-            self._probe.copy_from(self._base)
-            _rest(self._probe, moved)
-            by = next(iter(moved.values())) - self._value[n]
-            self._slope[n] = (self._probe.positions - self._base.positions) / by
+            names = self.candidates[n]
+            self._slope[n] = _slope(self._base, self._probe, names, probe_fraction)
 
     def _with_best(self, needed: Flags, firsts: Flags) -> Flags:
         """Return the used controls and the control that improves most together with them.
@@ -364,3 +353,35 @@ def _rest(clone: Simulation, values: dict[str, float]) -> None:
     steps_to_rest = 6  # of a clone after a small change; less than a twentieth of it is left
     for _ in range(steps_to_rest):
         clone.step(STEP_LENGTH)
+
+
+def _shifted(face: Simulation, names: Names, fraction: float) -> dict[str, float]:
+    """Values of controls moved up by a share of their range, or down without room above."""
+    low, high = face.controls.limits[names[0]]
+    value = face.controls.values[names[0]]
+    step = fraction * (high - low)
+    moved = value + step if value + step <= high else max(value - step, low)
+    return dict.fromkeys(names, moved)
+
+
+def _slope(base: Simulation, probe: Simulation, names: Names, fraction: float) -> Floats64:
+    """Motion of the skin for each unit of controls that move together, (V, 3) [head units].
+
+    The probe moves the controls by a share of their range.
+    """
+    moved = _shifted(base, names, fraction)
+    probe.copy_from(base)
+    _rest(probe, moved)
+    by = moved[names[0]] - base.controls.values[names[0]]
+    slope: Floats64 = (probe.positions - base.positions) / by
+    return slope
+
+
+def motion_of(face: Simulation, name: str) -> Floats64:
+    """Motion of the resting skin from 0 to 1 of a control, to first order, (V, 3) [head units].
+
+    The face itself does not change.
+    """
+    base = face.clone()
+    _rest(base, dict.fromkeys(base.controls.values, 0.0))
+    return _slope(base, base.clone(), (name,), 1.0)

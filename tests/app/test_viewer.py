@@ -14,7 +14,7 @@ from imgui_bundle import imgui
 from pytest import approx
 
 from risorius.app.compiling_note import COMPILING_TEXT
-from risorius.app.viewer.picture.stage import pointed_lines
+from risorius.app.viewer.picture.highlights import pointed_lines
 from risorius.app.viewer.settings import Display, load_settings
 
 from .driving import (
@@ -392,14 +392,25 @@ def test_a_pull_is_the_same_beside_busy_processes(viewer):
 
 
 def test_the_muscle_under_the_mouse_shows_softly(viewer):
-    """Fibres of the muscle below the mouse light up, fainter than those of a control.
+    """The muscle below the mouse and the skin that it moves light up, but not in files.
 
-    Beside the skin no fibre lights up.
+    Beside the skin nothing lights up.
     """
-    xdotool(viewer, "mousemove", *landmark(viewer, 54))
     view = viewer.face.view
+    stage = viewer.context.stage
+    plain = stage.draw_image(view)
+    dark = viewer.surface.read_scene(3).astype(int)
+    xdotool(viewer, "mousemove", *landmark(viewer, 54))
     assert until(viewer, lambda: view.hovered is not None)
-    assert view.hovered.endswith("_left")
+    assert view.hovered.name.endswith("_left")
+    scene = viewer.session.scene
+    side = scene.positions[:, 0] - scene.framing.focus[0]
+    assert side[view.hovered.shares > 0.5].min() > 0.0
+    assert (stage.draw_image(view) == plain).all()
+    stage.draw(view)
+    redness = viewer.surface.read_scene(3).astype(int) - dark
+    lit = redness[..., 0] - redness[..., 2] > 20
+    assert 500 < lit.sum() < 0.1 * lit.size
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
     assert until(viewer, lambda: view.hovered is None)
 

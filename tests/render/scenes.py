@@ -84,7 +84,7 @@ def draw(
     style: render.Style = PLAIN_STYLE,
     *,
     parts: Sequence[render.PlacedPart] = (),
-    lines: Sequence[render.Lines] = (),
+    lines: Sequence[render.Lines | render.Shade] = (),
     camera: render.OrbitCamera | None = None,
 ) -> SignedImage:
     """The picture of one frame, shape (H, W, 3), int32."""

@@ -253,3 +253,18 @@ def test_few_muscles_are_found_again(simulation, head, generator):
     held = [share for share in shares if share < 0.3]
     assert len(held) >= 42
     assert np.mean(held) < 0.1
+
+
+def test_the_motion_of_a_muscle_ignores_the_pose(simulation, head):
+    """The motion is that of a smile at rest, although the face shows a kiss; the face stays."""
+    expected = sim.motion_of(simulation, "zygomaticus_major_left")
+    simulation.controls.set("orbicularis_oris_sphincter", 1.0)
+    for _ in range(20):
+        simulation.step(FRAME_TIME)
+    before = simulation.positions.copy()
+    found = sim.motion_of(simulation, "zygomaticus_major_left")
+    assert (simulation.positions == before).all()
+    assert found == approx(expected, abs=0.3)
+    corner, other_corner = norm(found[head.landmarks[[LEFT_CORNER, RIGHT_CORNER]]], axis=1)
+    assert corner > 5.0
+    assert other_corner < 2.0

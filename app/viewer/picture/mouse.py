@@ -17,7 +17,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..interface.gui import LEFT_BUTTON, MIDDLE_BUTTON, RIGHT_BUTTON, em
 from ..messages import Messages
-from .skin import Ray, SkinDrag, muscle_at, skin_under
+from .skin import HoveredMuscle, Ray, SkinDrag, hovered_muscle, skin_under
 from .stage import SceneView, Stage
 
 Grab = Callable[..., SkinDrag]
@@ -156,13 +156,13 @@ class Mouse(CameraMouse):
         if io.mouse_delta.x or io.mouse_delta.y:
             self._view.hovered = self._muscle_under(io)
 
-    def _muscle_under(self, io: Any) -> str | None:
+    def _muscle_under(self, io: Any) -> HoveredMuscle | None:
         """Return the muscle under the mouse; None beside the skin."""
         face = self._stage.scene.face
         point = None if face is None else self._skin_under(io)
         if face is None or point is None:
             return None
-        return muscle_at(face.simulation, point)
+        return hovered_muscle(face.simulation, point, self._view.hovered)
 
     def _take(self, io: Any) -> str:
         if self._is_at_divider(io.mouse_pos.x):

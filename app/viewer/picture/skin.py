@@ -72,9 +72,37 @@ def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats
     return point
 
 
+@dataclass(frozen=True, eq=False)
+class HoveredMuscle:
+    """The muscle under the mouse.
+
+    shares: motion of each vertex by the muscle, relative to the vertex that moves most, (V,).
+    """
+
+    name: str
+    shares: Floats64
+
+    @classmethod
+    def of(cls, simulation: sim.Simulation, name: str) -> HoveredMuscle:
+        """Measure the motion that a muscle alone gives to a face at rest."""
+        distances = np.linalg.norm(sim.motion_of(simulation, name), axis=1)
+        least_motion = 1e-9  # for a muscle that moves nothing
+        return cls(name, distances / max(distances.max(), least_motion))
+
+
 def muscle_at(simulation: sim.Simulation, point: Floats64) -> str | None:
     """Return the muscle at a point (3,) of the skin, or None."""
     return simulation.anatomy.muscle_at(point, 14.0)  # [mm] from a fibre at most
+
+
+def hovered_muscle(
+    simulation: sim.Simulation, point: Floats64, last: HoveredMuscle | None
+) -> HoveredMuscle | None:
+    """Return the muscle at a point (3,) of the skin, or None; `last` if it is still the same."""
+    name = muscle_at(simulation, point)
+    if last is not None and last.name == name:
+        return last
+    return None if name is None else HoveredMuscle.of(simulation, name)
 
 
 class SkinDrag:

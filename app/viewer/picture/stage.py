@@ -14,7 +14,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from types import MappingProxyType
 
-import numpy as np
 from imgui_bundle import imgui
 
 from risorius import render
@@ -32,6 +31,8 @@ from ..messages import Messages
 from ..session.physics import CALM_SECONDS, FrameTimes
 from ..session.session import Session
 from ..settings import BACKGROUND_CHOICES, SKIN_CHOICES, TONE_ANGLES, Display, Settings
+from .highlights import highlights
+from .skin import HoveredMuscle
 
 
 class SceneView:
@@ -45,7 +46,7 @@ class SceneView:
     camera: render.OrbitCamera
     area: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
     pointed: Mapping[str, float] = MappingProxyType({})
-    hovered: str | None = None
+    hovered: HoveredMuscle | None = None
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         self._session = session
@@ -193,7 +194,7 @@ class Stage:
         timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
         style = style_of(display, view.background)
-        overlays = [] if is_photo else self._lit_muscles(view)
+        overlays = [] if is_photo else highlights(self.scene, view.pointed, view.hovered)
         self.pipeline.draw(
             view.camera, style, viewports, anatomy=display.anatomy, overlays=overlays, timer=timed
         )
@@ -211,12 +212,6 @@ class Stage:
         has_bar = view.display.splits and has_splits
         return labels(texts, places, has_bar=has_bar, least=view.letter_size)
 
-    def _lit_muscles(self, view: SceneView) -> list[render.Lines]:
-        """Return fibres of the pointed control's muscles, or faint fibres of the hovered muscle."""
-        if view.pointed or view.hovered is None:
-            return pointed_lines(self.scene, view.pointed)
-        return pointed_lines(self.scene, {view.hovered: 1.0}, clarity=0.35)
-
     def draw_image(self, view: SceneView) -> Image:
         """Return the picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL_DETAIL
@@ -228,31 +223,6 @@ class Stage:
         shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
         seen = [each.seen for each in self.viewports(view.display, view.viewport)]
         return captioned(frame, shown, [x - left for x, *_ in seen])
-
-
-def pointed_lines(
-    scene: Drawable, weights: Mapping[str, float], clarity: float = 0.9
-) -> list[render.Lines]:
-    """Return the fibres of a control's muscles; muscles with larger weights are more opaque.
-
-    weights: name of a muscle -> its weight; a name without side means both sides. clarity: the
-    opacity of the muscle with the largest weight.
-    """
-    face = scene.face if weights else None
-    fibres = {} if face is None else face.simulation.anatomy.courses()
-    seen: dict[str, float] = {}
-    for name, share in weights.items():
-        for side in (name, f"{name}_left", f"{name}_right"):
-            if side in fibres:
-                seen[side] = max(share, seen.get(side, 0.0))
-    most = max(seen.values(), default=1.0)
-    drawn = []
-    for name, share in seen.items():
-        if share >= 0.2 * most:
-            opacity = clarity * share / most
-            colours = np.tile((1.0, 0.66, 0.10), (len(fibres[name]), 1))  # sRGB
-            drawn.append(render.Lines(fibres[name], colours, 2.5, opacity, opacity))
-    return drawn
 
 
 def style_of(
