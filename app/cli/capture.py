@@ -116,8 +116,8 @@ class Filming:
         behind = scene_light(drawing.style_options["light"]).behind
         if behind is None:
             raise UserError(
-                f"--background {MAP_BACKGROUND}: no map lights the scene; add --light FILE, or "
-                f"--style light={' or '.join(render.LIGHT_MAPS)}"
+                f"--background {MAP_BACKGROUND}: no map lights the scene; add --style light=FILE, "
+                f"or light={' or '.join(render.LIGHT_MAPS)}"
             )
         return replace(style, background=behind)
 
@@ -169,8 +169,8 @@ class Filming:
 @click.option("--sheet", type=PATH_TYPE, help="A .png with the named poses side by side.")
 @SCENE_OPTION
 @SOUND_OPTION
-@packed(Filming)
-@packed(DrawingOptions)
+@packed("filming", Filming)
+@packed("drawing", DrawingOptions)
 def capture(
     script: Path | None,
     settings: tuple[str, ...],
@@ -195,7 +195,7 @@ def capture(
     written = [output, sheet]
     if output and filming.passes is not None:
         written += files_beside(output)
-    check_apart(written, (script, sound, drawing.light, *drawing.files))
+    check_apart(written, (script, sound, drawing.light_file, *drawing.files))
     if sound is not None and (output is None or output.suffix.lower() not in SOUND_FILM_SUFFIXES):
         raise UserError(
             f"--sound {sound}: only films with sound can hold it; end -o in "

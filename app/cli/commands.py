@@ -88,10 +88,10 @@ class Live:
 @click.option("--script", type=PATH_TYPE, help="The script or recording that the space key plays.")
 @SOUND_OPTION
 @QUIET_OPTION
-@packed(Live)
+@packed("live", Live)
 @GAIN_OPTION
 @MIRROR_OPTION
-@packed(DrawingOptions)
+@packed("drawing", DrawingOptions)
 def view(
     size: tuple[int, int] | None,
     scene: str | None,
@@ -155,7 +155,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND_OPTION
 @QUIET_OPTION
-@packed(DrawingOptions)
+@packed("drawing", DrawingOptions)
 def replay(
     script: Path,
     size: tuple[int, int] | None,
@@ -240,10 +240,8 @@ def open_window(
     path = settings_path()
     with SplashScreen(size, path) as splash:
         script, head, complaint = splash.run(load)
-        if drawing.files:
-            splash.settings.note_recent(*drawing.files)
-        if drawing.light is not None:
-            splash.settings.note_recent(drawing.light)
+        for opened in drawing.opened_files:
+            splash.settings.note_recent(*opened)
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 

@@ -77,8 +77,8 @@ class Exporting:
     "-o", "--output", type=PATH_TYPE, required=True, help="The file; with --as also a folder."
 )
 @SCENE_OPTION
-@packed(Exporting)
-@packed(HeadOptions)
+@packed("exporting", Exporting)
+@packed("subject", HeadOptions)
 def export(
     script: Path | None,
     settings: tuple[str, ...],

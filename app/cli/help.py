@@ -16,7 +16,7 @@ OPTIONS_BY_HEADING: Mapping[str, tuple[str, ...]] = {
     "Live face": ("live", "port", "address", "gains", "mirror"),
     "Face": ("head", "landmarks"),
     "Refinement": ("look", "refiner", "refiner_settings"),
-    "Picture": ("camera", "background", "light", "style_settings", "anatomy"),
+    "Picture": ("camera", "background", "style_settings", "anatomy"),
 }
 
 _CONVERT_HINT = (
@@ -33,6 +33,7 @@ MOVED_OPTIONS: Mapping[str, str] = {
     "--rate": _CONVERT_HINT,
     "--skin": _STYLE_HINT,
     "--wrinkles": _STYLE_HINT,
+    "--light": _STYLE_HINT,
     "--wireframe": _STYLE_WORD_HINT,
     "--splits": _STYLE_WORD_HINT,
     "--skin-opacity": "write --anatomy muscles,skull,opacity=VALUE",
@@ -59,7 +60,8 @@ class RenewedCommand(click.Command):
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
             instead = MOVED_OPTIONS.get(error.option_name)
-            if instead is None:
+            has_style = any(each.name == "style_settings" for each in self.params)
+            if instead is None or (instead == _STYLE_HINT and not has_style):
                 raise
             name = error.option_name.removeprefix("--")
             cure = instead.format(option=error.option_name, name=name)

@@ -15,7 +15,7 @@ from click.core import ParameterSource
 from ..errors import UserError
 from ..playback import LEAD_TIME, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
-from .styles import LIGHT_NAMES, STRUCTURE_NAMES, STYLE_WORDS, anatomy_in, style_in
+from .styles import LIGHT_NAMES, STRUCTURE_NAMES, anatomy_in, style_in
 from .value_types import PATH_TYPE, FiniteRange, HeadName
 
 if TYPE_CHECKING:
@@ -60,15 +60,14 @@ def options_of(settings: type[Any]) -> Iterator[CommandFunction]:
 
 
 def packed(
-    settings: type[Any], options: Iterable[CommandFunction] = ()
+    name: str, settings: type[Any], options: Iterable[CommandFunction] = ()
 ) -> Callable[[CommandFunction], CommandFunction]:
-    """Add the options of a dataclass to a command, which receives them as one object.
+    """Add the options of a dataclass to a command, which receives them as one argument.
 
-    The argument has the name of the dataclass in lower case. options: options in place of those
-    that the fields declare.
+    - name: of the argument.
+    - options: options in place of those that the fields declare.
     """
     keys = [each.name for each in fields(settings)]
-    name = settings.__name__.lower()
     decorators = list(options or options_of(settings))
 
     def decorate(command: CommandFunction) -> CommandFunction:
@@ -177,39 +176,44 @@ class DrawingOptions(HeadOptions):
         metavar="NAME[=VALUE],...",
         help="How the head looks: wireframe; splits, colours by the number of splits; wires, "
         "outlines of triangles that are split more than at rest; skin=textured, plain or clay; "
-        f"light={', '.join(LIGHT_NAMES[:-1])} or {LIGHT_NAMES[-1]}; wrinkles=0..1, their depth.",
-    )
-
-    light: Path | None = option(
-        type=PATH_TYPE,
-        help="A light map (.hdr or .exr), twice as wide as high. Its "
-        "middle lies behind the head. --style light=NAME chooses a built-in one.",
+        f"light={', '.join(LIGHT_NAMES)}, or your light map (.hdr or .exr), twice as wide as high, "
+        "with its middle behind the head; wrinkles=0..1, their depth.",
     )
 
     @property
+    def light_file(self) -> Path | None:
+        """The user's light map; None for a built-in light. Raises UserError for unknown words."""
+        light = style_in(self.style_settings)["light"]
+        return light if isinstance(light, Path) else None
+
+    @property
+    def opened_files(self) -> list[tuple[Path, ...]]:
+        """The user's files, grouped as they are opened: a head with its landmarks, a light map."""
+        groups = [self.files] if self.files else []
+        if self.light_file is not None:
+            groups.append((self.light_file,))
+        return groups
+
+    @property
     def style_options(self) -> dict[str, Any]:
-        """The settings of --style by name, with the path of --light as `light`.
+        """The settings of --style by name; a light map is named by its absolute path.
 
         Raises UserError for unknown words, and for a file that is not a light map.
         """
         settings = style_in(self.style_settings)
-        if self.light is None:
+        path = self.light_file
+        if path is None:
             return settings
         from ..light_maps import check_light_map
 
-        if "light" in STYLE_WORDS.read(self.style_settings):
-            raise UserError("--light and --style light= are both given; leave one out")
-        name = self.light.name
-        if name in LIGHT_NAMES and not self.light.exists():
-            raise UserError(f"--light {name}: no such file; write --style light={name}")
-        check_light_map(self.light)
-        return settings | {"light": str(self.light.absolute())}
+        check_light_map(path)
+        return settings | {"light": str(path.absolute())}
 
     @property
     def is_given(self) -> bool:
         """Whether the command line sets an option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
-        names = ("look", "refiner", "refiner_settings", "style_settings", "light", "anatomy")
+        names = ("look", "refiner", "refiner_settings", "style_settings", "anatomy")
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
@@ -269,7 +273,7 @@ PLAYBACK_OPTIONS = (
         "--rate", type=FiniteRange(1, 1000), help="Frames per second, in place of the file's times."
     ),
 )
-with_playback = packed(Playback, PLAYBACK_OPTIONS)
+with_playback = packed("playback", Playback, PLAYBACK_OPTIONS)
 
 
 def _print_report(report: Report) -> None:

@@ -76,7 +76,7 @@ class Rigging:
     required=True,
     help="The file avatar.glb; with --as obj a folder.",
 )
-@packed(Rigging)
+@packed("rigging", Rigging)
 def rig(head: Path | int | str | None, output: Path, rigging: Rigging) -> None:
     """Make an avatar of HEAD: a mesh with the same vertices, and with named shapes.
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from ..errors import UserError
@@ -12,6 +13,7 @@ from ..errors import UserError
 STRUCTURE_NAMES = ("muscles", "skull")  # a copy of anatomy.STRUCTURES, which is imported later
 # A copy of the names in render.LIGHTS, which is imported later.
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard", "clouds", "room", "street")
+LIGHT_SUFFIXES = (".hdr", ".exr")  # a copy of light_maps.LIGHT_SUFFIXES, which is imported later
 SKIN_NAMES = ("textured", "plain", "clay")
 SIDE_NAMES = ("both", "left", "right")
 
@@ -21,16 +23,18 @@ class Words:
     """The words that an option may hold.
 
     flags: single words. choices: the words that each name takes as NAME=WORD. fractions: the names
-    that take a number from 0 to 1 as NAME=x.
+    that take a number from 0 to 1 as NAME=x. file_kinds: the suffixes of files that a name in
+    `choices` also takes, as NAME=FILE.
     """
 
     option: str
     flags: tuple[str, ...]
     choices: Mapping[str, tuple[str, ...]]
     fractions: tuple[str, ...]
+    file_kinds: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def read(self, settings: Sequence[str]) -> dict[str, Any]:
-        """Return the value of each name that is set, True for a flag.
+        """Return the value of each name that is set: True for a flag, a Path for a file.
 
         Raises UserError for any other word.
         """
@@ -50,15 +54,22 @@ class Words:
     @property
     def allowed(self) -> str:
         """All allowed words, for messages."""
-        named = [f"{name}={'|'.join(words)}" for name, words in self.choices.items()]
+        named = []
+        for name, words in self.choices.items():
+            files = [f"FILE{suffix}" for suffix in self.file_kinds.get(name, ())]
+            named.append(f"{name}={'|'.join([*words, *files])}")
         numbers = [f"{name}=0..1" for name in self.fractions]
         return ", ".join([*self.flags, *named, *numbers])
 
-    def _choice(self, name: str, text: str) -> str:
-        if text not in self.choices[name]:
-            words = ", ".join(self.choices[name])
-            raise UserError(f"{self.option} {name}={text}: '{text}' is none of {words}")
-        return text
+    def _choice(self, name: str, text: str) -> str | Path:
+        if text in self.choices[name]:
+            return text
+        suffixes = self.file_kinds.get(name, ())
+        if Path(text).suffix.lower() in suffixes:
+            return Path(text)
+        words = ", ".join(self.choices[name])
+        files = f", and no file {' or '.join(suffixes)}" if suffixes else ""
+        raise UserError(f"{self.option} {name}={text}: '{text}' is none of {words}{files}")
 
     def _fraction(self, name: str, text: str) -> float:
         try:
@@ -75,6 +86,7 @@ STYLE_WORDS = Words(
     ("wireframe", "splits", "wires"),
     {"skin": SKIN_NAMES, "light": LIGHT_NAMES},
     ("wrinkles",),
+    {"light": LIGHT_SUFFIXES},
 )
 ANATOMY_WORDS = Words("--anatomy", STRUCTURE_NAMES, {"dissect": SIDE_NAMES}, ("opacity",))
 

@@ -265,7 +265,7 @@ def test_a_map_is_seen_as_bright_as_it_is(map_ahead):
 def test_capture_shows_the_map_behind(tmp_path, lit):
     """The map may be a file, or a built-in one by name; without one, a line asks for an option."""
     path = write_map(tmp_path / "sky.hdr")
-    light = ("--light", path) if lit == "file" else ("--style", "light=room")
+    light = ("--style", f"light={path if lit == 'file' else 'room'}")
     light_map = read_light_map(path) if lit == "file" else render.LIGHT_MAPS["room"]
     options = ("--scene", "plane", "--size", "80x60", "--background", "map")
     succeeded("capture", *options, *light, "--quiet", "-o", tmp_path / "seen.png")
@@ -274,4 +274,4 @@ def test_capture_shows_the_map_behind(tmp_path, lit):
     assert_allclose(seen, _painted(light_map.background(), lens)[2, 2], atol=2)
     result = risorius("capture", *options, "-o", tmp_path / "seen.png")
     assert result.exit_code == 2
-    assert "no map lights the scene; add --light FILE, or --style light=" in result.output
+    assert "no map lights the scene; add --style light=FILE, or light=" in result.output

@@ -297,7 +297,7 @@ def test_the_window_remembers(tmp_path):
     assert replayed("--look", "smooth").display == Display()  # chosen, though the default
     sky = write_map(tmp_path / "sky.hdr")
     relative = os.path.relpath(sky, root)
-    settings = replayed("--light", relative)
+    settings = replayed("--style", f"light={relative}")
     assert settings.display == Display(light=str(root / relative))  # for windows in other folders
     assert settings.recent == [str(script), str(root / relative)]
     assert replayed().display == settings.display

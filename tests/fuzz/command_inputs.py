@@ -52,9 +52,10 @@ REFUSED_COMMANDS = {
     # Options that commands had before.
     f"{CAPTURE} --gain all=1": "--gain was removed: convert the recording first: risorius convert",
     f"{CAPTURE} --wireframe": "--wireframe was removed: write --style wireframe",
-    f"{CAPTURE} --light side": "no such file; write --style light=side",
-    f"{CAPTURE} --light x.hdr --style light=side": "are both given; leave one out",
-    "view --light side": "no such file; write --style light=side",
+    f"{CAPTURE} --light side": "--light was removed: write --style light=VALUE",
+    f"{CAPTURE} --style light=x.hdr": "x.hdr: no such light map",
+    f"{CAPTURE} --style light=sunny": "'sunny' is none of studio, side, overcast, window, hard,",
+    "view --light x.hdr": "--light was removed: write --style light=VALUE",
     "export good.toml -o x.glb --light side": "No such option",
     "dataset -o set --count 1 --light none": "--light none: no such file or folder",
     "view --person 3": "--person was removed: write --head NUMBER",
@@ -111,7 +112,7 @@ REFUSED_COMMANDS = {
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is not a size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
     "capture --scene plane -o x.mp4 --background transparent": "a film cannot be transparent",
-    "capture --background map -o x.png": "--background map: no map lights the scene; add --light",
+    "capture --background map -o x.png": "no map lights the scene; add --style light=FILE",
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.app.cli.styles import LIGHT_NAMES
+from risorius.app import light_maps
+from risorius.app.cli.styles import LIGHT_NAMES, LIGHT_SUFFIXES
 
 from .scenes import (
     DARK_SKIN,
@@ -81,5 +82,6 @@ def test_no_light_is_too_bright_or_too_dark(surface, name):
 
 
 def test_the_command_knows_all_lights():
-    """The list of lights for `--style` is complete; help reads it without OpenGL."""
+    """The lists of lights and their files for `--style` are complete; help needs no OpenGL."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)
+    assert light_maps.LIGHT_SUFFIXES == LIGHT_SUFFIXES
