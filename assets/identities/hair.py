@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
+from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64
 from ...geometry.closest import closest_points
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
@@ -73,10 +73,10 @@ HAIR_CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
         "parted": Fall(26.0, 77.0),
         "centred": Fall(0.0, 123.0),
         "aside": Fall(-22.0, 97.0),
-        "knotted": Cut((0.62, 0.52, 0.59), 18.0, 32.0, 0.45, behind=26.0, knot=36.0),
-        "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=26.0, knot=36.0),
+        "knotted": Cut((0.62, 0.52, 0.59), 18.0, 32.0, 0.45, behind=45.0, knot=36.0),
+        "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=45.0, knot=36.0),
         "tailed": Cut(
-            (0.38, -0.3, 0.87), 18.0, 32.0, 0.45, behind=26.0, knot=27.0, tail=240.0, aside=0.5
+            (0.38, -0.3, 0.87), 18.0, 32.0, 0.45, behind=45.0, knot=27.0, tail=240.0, aside=0.5
         ),
         "short": OWN_CUT,
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
@@ -215,12 +215,30 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # Locks at the front are at least this long; longer cuts are combed over the forehead.
     least = min(2.0 + 0.15 * length * cut.top, 5.5)
     growth = TIED_HAIR if cut.knot else replace(SHORT_HAIR, least=least)
-    # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
-    upward_fraction = 0.8
-    hangs = (normals[:, 1] < upward_fraction) | (behind < 2.0 * hem_depth) | (cut.knot > 0.0)
-    hangs &= points[:, 2] > middle[2]  # loose hair hangs over the skin
+    height = off + MEAN_PLACE * (way * normals).sum(axis=1)
+    hangs = _hangs(cut, points - middle, normals, behind, height)
     inside = from_within(_with_dense_hem(hair), faces[hangs[faces].all(axis=1)])
     return inside, hair, locks_on(hair, growth)
+
+
+def _hangs(
+    cut: Cut, off_centre: Points, normals: Points, behind: Floats64, height: Floats64
+) -> Flags:
+    """Return where the inner side of hair is drawn, (n,).
+
+    off_centre: places on the skin, relative to the head's centre [mm], (n, 3). normals: unit
+    normals there, (n, 3). behind: distances behind the hairline [mm], (n,). height: heights of the
+    layers over the skin [mm], (n,).
+    """
+    if cut.knot:
+        # Tied hair also stands off the hollow skin above ears. Where it lies on the skin, no view
+        # passes below it; its inner side would show in the groove before ears.
+        last_depth, lying_height = 45.0, 2.0  # [mm] behind the head's centre, and over the skin
+        return (off_centre[:, 2] > -last_depth) & (height > lying_height)
+    # Where normals point up more than this, the inner side shows only at the hem of a bald crown.
+    upward_fraction, crown_depth = 0.8, 40.0  # depth behind the hairline [mm]
+    hangs_over = off_centre[:, 2] > 0.0  # loose hair hangs over the skin
+    return hangs_over & ((normals[:, 1] < upward_fraction) | (behind < crown_depth))
 
 
 def _with_dense_hem(hair: Part) -> Part:

@@ -20,7 +20,7 @@ from ..smooth import Points, smooth_step
 
 MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATION_COUNT = 3  # points along a lock: root, middle and tip
-VERTEX_COUNT = 2 * STATION_COUNT - 1  # vertices of a lock
+VERTEX_COUNT = 2 * STATION_COUNT  # vertices of a lock
 FINEST_RADIUS = 0.05  # [mm]; radius with which a single hair is drawn
 
 
@@ -35,7 +35,7 @@ class Growth:
     [mm]. spread: sideways deviation of tips, as a fraction of the length.
     half: half the width of the widest lock at its root [mm].
     lying: how flat locks lie on the layers, 0 to 1.
-    radius: radius of the head around which locks bend [mm].
+    radius: radius of the head around which locks bend [mm]; 0: that of the layers at their roots.
     fringe: how much denser locks are at hems: 0 as elsewhere, 1 twice as dense.
     """
 
@@ -59,11 +59,11 @@ TIED_HAIR = Growth(
     root=0.5,
     tip=1.7,
     least=5.0,
-    longest=34.0,
+    longest=18.0,
     spread=0.07,
     half=0.22,
-    lying=0.9,
-    radius=78.0,
+    lying=1.0,
+    radius=0.0,
 )
 FALLING_HAIR = Growth(
     count=500,
@@ -122,23 +122,26 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     length = np.minimum(reach * np.maximum(long, growth.least), growth.longest)
     t = np.linspace(0.0, 1.0, STATION_COUNT, dtype=np.float32)[:, None]
     # Locks bend around the head, so their tips hang.
-    bend = length**2 / (2.0 * growth.radius) * normal
+    curved = 1.0 / growth.radius if growth.radius else _curvatures(hair, corners, ahead)
+    bend = 0.5 * curved * length**2 * normal
     start = root + (growth.root - MEAN_PLACE) * way
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
     thin *= 1.0 + 8.0 * upright
-    half = (FINEST_RADIUS + (growth.half - FINEST_RADIUS) * thin)[:, None] * (1.0 - t**2)
+    # Both vertices of a tip have nearly one place, but two sides of the drawn pixel. With one
+    # vertex a tip would be a row of dots.
+    tapering = np.maximum(1.0 - t**2, 0.01)
+    half = (FINEST_RADIUS + (growth.half - FINEST_RADIUS) * thin)[:, None] * tapering
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)
     opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)
     sides = np.cross(normal[:, None], along) * half
 
     def rows(first: Floats32 | Floats64, second: Floats32 | Floats64 | None = None) -> Floats32:
-        """Return values of both sides of stations as rows of vertices; a tip has one vertex."""
+        """Return values of both sides of stations as rows of vertices."""
         both = np.stack([first, first if second is None else second], axis=2)
-        whole = both.reshape(len(both), 2 * STATION_COUNT, -1)[:, :VERTEX_COUNT]
-        return np.ascontiguousarray(whole.reshape(len(both) * VERTEX_COUNT, -1), np.float32)
+        return np.ascontiguousarray(both.reshape(len(both) * VERTEX_COUNT, -1), np.float32)
 
     every = np.broadcast_to(normal[:, None], midpoints.shape)
     return replace(
@@ -151,6 +154,24 @@ def locks_on(hair: Part, growth: Growth) -> Part:
         strand_radius=growth.half,
         striation=np.hstack([rows(along), rows(half, -half), rows(opacity)]),
     )
+
+
+def _curvatures(hair: Part, corners: Integers32, ahead: Floats64) -> Floats64:
+    """Return curvatures of the layers along n locks [1/mm], (n, 1).
+
+    corners: vertices of the faces on which locks grow, (n, 3). ahead: unit directions, (n, 3).
+    """
+    places, normals = (each[corners].astype(np.float64) for each in (hair.vertices, hair.normals))
+    first, second = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
+    # The solution of ahead = a * first + b * second within the face.
+    square, mixed, other = _dot(first, first), _dot(first, second), _dot(second, second)
+    along_first, along_second = _dot(first, ahead), _dot(second, ahead)
+    area = np.maximum(square * other - mixed**2, 1e-6)
+    a = (other * along_first - mixed * along_second) / area
+    b = (square * along_second - mixed * along_first) / area
+    turned = a * (normals[:, 1] - normals[:, 0]) + b * (normals[:, 2] - normals[:, 0])
+    least_radius, greatest_radius = 25.0, 400.0  # [mm]
+    return np.clip(_dot(turned, ahead), 1.0 / greatest_radius, 1.0 / least_radius)
 
 
 def _rise_around_whorl(rise: Floats64, away: Floats64) -> Floats64:
@@ -207,11 +228,10 @@ def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
 
 @lru_cache(maxsize=4)
 def _ribbons(count: int) -> Integers32:
-    """Return the faces of locks, counter-clockwise from outside, (count * 3, 3)."""
+    """Return the faces of locks, counter-clockwise from outside, (count * 4, 3)."""
     one = []
-    for k in range(0, VERTEX_COUNT - 3, 2):
+    for k in range(0, VERTEX_COUNT - 2, 2):
         one += [(k, k + 1, k + 2), (k + 2, k + 1, k + 3)]
-    one.append((VERTEX_COUNT - 3, VERTEX_COUNT - 2, VERTEX_COUNT - 1))
     firsts = VERTEX_COUNT * np.arange(count, dtype=np.int32)
     found = (firsts[:, None, None] + np.array(one, np.int32)).reshape(-1, 3)
     found.flags.writeable = False

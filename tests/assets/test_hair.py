@@ -256,6 +256,17 @@ def test_hair_behind_ears_lies_above_the_skin():
     assert (off * hair.normals).sum(axis=1)[is_dense].min() > -0.5  # [mm]; it was -1.5
 
 
+@pytest.mark.parametrize("number", [92000113, 92000121])
+def test_the_inner_side_of_tied_hair_stands_off_the_skin(number):
+    """No inner side lies on the skin: in the groove before an ear it showed as black dashes."""
+    person = person_called(number)
+    inside = next(part for part in person.parts if part.name == "hair_inside")
+    places = inside.vertices.astype(np.float64)
+    nearest = closest_points(places, person.vertices, person.faces)
+    away = np.linalg.norm(places - nearest.interpolate(person.vertices), axis=1)
+    assert np.percentile(away, 1.0) > 1.0
+
+
 def test_strands_turn_along_great_circles(generator):
     """Strands turn along great circles, as scipy interpolates each of them."""
     start, end = unit_vectors(generator.normal(size=(2, 8, 3)).reshape(-1, 3)).reshape(2, 8, 3)

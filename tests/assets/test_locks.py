@@ -12,6 +12,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
 from risorius.assets.identities import built_in_hair, person_called
 from risorius.assets.identities.locks import SHORT_HAIR, TIED_HAIR, VERTEX_COUNT, locks_on
+from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import cross_products
 from risorius.render import Style
 
@@ -32,7 +33,7 @@ def picture(name, view, size=(700, 700)):
 
 @pytest.mark.parametrize("growth", [SHORT_HAIR, TIED_HAIR])
 def test_locks_are_sound_ribbons(growth):
-    """The two corners of a station are equally far from its middle; a ribbon ends in a tip."""
+    """The two corners of a station are equally far from its middle; a ribbon ends in a thin tip."""
     hair = built_in_hair(load("head"))[1]
     locks = locks_on(hair, growth)
     assert len(locks.vertices) == VERTEX_COUNT * growth.count
@@ -44,10 +45,13 @@ def test_locks_are_sound_ribbons(growth):
     half = locks.striation[:, 3:4]
     middles = locks.vertices - half * np.cross(locks.normals, along)
     rows = middles.reshape(growth.count, VERTEX_COUNT, 3)
-    assert rows[:, 0:-1:2] == pytest.approx(rows[:, 1::2], abs=1e-4)
+    assert rows[:, ::2] == pytest.approx(rows[:, 1::2], abs=1e-4)
     lengths = np.linalg.norm(np.diff(rows[:, ::2], axis=1), axis=2).sum(axis=1)
     assert lengths.max() < 1.5 * growth.longest
-    assert (half.reshape(-1, VERTEX_COUNT)[:, -1] == 0.0).all()
+    tips = half.reshape(-1, VERTEX_COUNT)[:, -2:]
+    assert (tips[:, 0] > 0.0).all()  # else a tip has no two sides, and is a row of dots
+    assert np.abs(tips).max() < 0.005  # [mm]
+    assert (tips[:, 0] == -tips[:, 1]).all()
     outward = (cross_products(locks.vertices, locks.faces) * locks.normals[locks.faces[:, 0]]).sum(
         axis=1
     )
@@ -104,6 +108,19 @@ def test_locks_of_the_nape_lie_side_by_side(name):
     is_low = roots[:, 1] < np.percentile(roots[:, 1], 25.0)
     is_behind = roots[:, 2] < np.median(roots[:, 2])
     assert np.percentile(agreement[is_low & is_behind], 5.0) > 0.93
+
+
+@pytest.mark.parametrize("number", [92000104, 92000113])
+def test_tied_hair_lies_smooth(number):
+    """Nine of ten locks end within 3 mm of the layers; they stood off by 6 mm, like a comb."""
+    parts = {part.name: part for part in person_of(number).parts}
+    layers = parts["hair"]
+    tips = parts["hair_locks"].vertices[VERTEX_COUNT - 1 :: VERTEX_COUNT].astype(np.float64)
+    outline = layers.vertices.astype(np.float64)
+    nearest = closest_points(tips, outline, layers.faces)
+    off = tips - nearest.interpolate(outline)
+    height = (off * nearest.interpolate(layers.normals.astype(np.float64))).sum(axis=1)
+    assert np.percentile(height, 90.0) < 3.0
 
 
 @pytest.mark.parametrize("view", ["20,-20", "30,-15"])
