@@ -8,16 +8,13 @@ import pytest
 import trimesh
 from numpy.linalg import norm
 from pytest import approx
-from scipy.interpolate import RBFInterpolator
 
 from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.landmark_file import MisfitError
-from risorius.assets.fitting.mesh_validation import SkinPiece, rim_behind
-from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import boundary_loops, grid_faces
+from risorius.assets.topology import boundary_loops
 from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.assets.checks import edge_faces
@@ -369,75 +366,3 @@ def test_landmarks_on_two_pieces_are_named(other):
     numbers = np.array(_numbers(other, _45=count), dtype=np.int32)
     with pytest.raises(AssetError, match="landmark 45 lies on another piece of the mesh"):
         fit(mesh, numbers)
-
-
-def test_the_warp_is_the_interpolant_of_scipy(generator):
-    """The warp equals scipy's interpolant, exactly through points and with a tolerance.
-
-    It is evaluated at many points, and at none.
-    """
-    source = generator.normal(0.0, 50.0, (60, 3))
-    target = source + generator.normal(0.0, 4.0, (60, 3))
-    places = generator.normal(0.0, 60.0, (300, 3))
-    for give in (0.0, 0.2, np.linspace(0.0, 2.0, 60)):
-        wanted = RBFInterpolator(source, target, smoothing=give, kernel="linear", degree=1)
-        warp = ThinPlateSpline(source, target, give)
-        assert warp.points(places) == approx(wanted(places), abs=1e-9)
-        assert warp.points(np.zeros((0, 3))).shape == (0, 3)
-
-
-def test_no_warp_starts_from_a_plane(generator):
-    """Landmarks in one plane are refused, because they leave the other direction undetermined."""
-    source = generator.normal(0.0, 50.0, (60, 3)) * [1.0, 1.0, 0.0]
-    with pytest.raises(np.linalg.LinAlgError, match="plane"):
-        ThinPlateSpline(source, source)
-
-
-def test_warp_meets_its_points_and_keeps_similarities(generator):
-    """The warp maps landmarks exactly to their targets, and continues a similarity everywhere."""
-    source = generator.normal(size=(20, 3))
-    target = source + 0.2 * generator.normal(size=(20, 3))
-    assert np.abs(ThinPlateSpline(source, target).points(source) - target).max() < 1e-9
-    turn, _ = np.linalg.qr(generator.normal(size=(3, 3)))
-    moved = Similarity(2.0, turn, np.array([1.0, 2.0, 3.0]))
-    far = 5.0 * generator.normal(size=(50, 3))
-    assert (
-        np.abs(ThinPlateSpline(source, moved.points(source)).points(far) - moved.points(far)).max()
-        < 1e-7
-    )
-    again = Similarity.between(source, moved.points(source))
-    assert np.abs(again.points(far) - moved.points(far)).max() < 1e-9
-    assert again.is_mirrored == (np.linalg.det(turn) < 0.0)
-
-
-@pytest.mark.slow
-def test_a_pouch_behind_the_lips_is_removed():
-    """A pouch behind the lips of the file is removed for the built-in mouth.
-
-    The outer skin keeps its landmarks and vertex indices.
-    """
-    other = user_head()
-    bagged = closed(other.mesh, other.landmarks[60:68])
-    vertices = bagged.vertices.copy()
-    vertices[-1, 1] -= 0.04  # back, in the axes of this head
-    bagged = replace(bagged, vertices=vertices)
-    head = fit(bagged, other.landmarks)
-    assert len(other.mesh.vertices) not in head.file_vertices
-    assert len(head.faces) > 0.95 * len(other.mesh.faces)
-    assert np.array_equal(head.file_vertices[head.landmarks], other.landmarks)
-
-
-def test_the_rim_of_a_pouch_ends_along_a_row_of_vertices():
-    """What stays of a pouch behind the lips is whole rows of a regular mesh, without saw teeth."""
-    columns = 20
-    depths = np.array([0.0, 2.0, 4.0, 7.0, 12.0])  # [mm] of the rows behind the lips' edge
-    depth, across = np.meshgrid(depths, np.linspace(-20.0, 20.0, columns), indexing="ij")
-    wave = 0.5 * (-1.0) ** np.arange(columns)  # every second vertex of a row lies deeper
-    ahead = -depth - wave * (depth == depths[2])
-    vertices = np.stack([across, np.zeros_like(across), ahead], axis=2).reshape(-1, 3)
-    faces = grid_faces(np.arange(len(vertices)).reshape(len(depths), columns))
-    none = np.zeros(0, np.int32)
-    skin = SkinPiece(vertices, faces, none, none, none)
-    row = np.repeat(np.arange(len(depths)), columns)
-    rim = rim_behind(skin, row == 0, row > 0)
-    assert np.array_equal(rim, (row == 1) | (row == 2))

@@ -10,6 +10,7 @@ from pytest import approx
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.fitting.eyeballs import sphere_of
 from risorius.assets.fitting.mouth_walls import FittedSkin, opened_jaws
 from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
 from risorius.assets.fitting.warp import ThinPlateSpline
@@ -222,3 +223,14 @@ def test_lids_of_shut_eyes_hardly_move(sleeper, name):
         places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2) + eye.centre[:2]
         skin = simulation.positions[sleeper.faces]
         assert _meets(places, skin[(skin[:, :, 2] > eye.centre[2]).all(axis=1)]).all()
+
+
+def test_a_ball_is_found_where_it_is():
+    """Half a ball is enough to find it; other parts do not change the result."""
+    points = 12.0 * ball(3).vertices + (30.0, 1.0, 70.0)
+    front = points[points[:, 2] > 68.0]
+    centre, radius = sphere_of(front, np.array([31.0, 0.0, 72.0]), 11.0)
+    assert np.allclose(centre, (30.0, 1.0, 70.0), atol=0.01)
+    assert radius == approx(12.0, abs=0.01)
+    guess = np.array([31.0, 0.0, 72.0])
+    assert sphere_of(front * (1.0, 1.0, 0.0), guess, 11.0)[1] == 11.0
