@@ -45,8 +45,12 @@ class Marked(Protocol):
     def face_uv(self) -> Integers32: ...
 
 
-def oil_of(head: Marked) -> Image:
-    """Return the oil on a head in the layout of its texture, 255 on the forehead, (H, W), uint8."""
+def oil_of(head: Marked, stubble: Floats32 | None = None) -> Image:
+    """Return the oil on a head in the layout of its texture, 255 on the forehead, (H, W), uint8.
+
+    stubble: its density in the layout of the texture, 0 to 1, (MAP_SIZE, MAP_SIZE). Hairs scatter
+    the highlight, or dark stubble on a chin would have a white patch.
+    """
     from scipy.spatial import cKDTree  # slow to import, and a head loads without it
 
     marks = head.vertices[head.landmarks]
@@ -61,6 +65,9 @@ def oil_of(head: Marked) -> Image:
     away, beside = cKDTree(head.uv).query(texels, k=min(4, len(oil)))
     weights = 1.0 / np.square(away * MAP_SIZE + 0.3)
     mixed = (weights * oil[beside]).sum(axis=1) / weights.sum(axis=1)
+    if stubble is not None:
+        scattered_share = 0.7  # of the highlight, in dense stubble; chosen by eye
+        mixed *= 1.0 - scattered_share * stubble.ravel()
     return read_only(np.rint(255.0 * mixed).astype(np.uint8).reshape(MAP_SIZE, MAP_SIZE))
 
 

@@ -151,7 +151,7 @@ def _images_of(head: assets.Head | FittedHead) -> SkinImages:
         albedo=head.albedo,
         in_tone=recoloured if is_built_in else in_tone,
         ambient_occlusion=head.ambient_occlusion,
-        oil=assets.oil_of(head),
+        oil=assets.oil_of(head, head.stubble if isinstance(head, Person) else None),
         fine_shape=head.fine_shape,
         wrinkles=with_lids(head.wrinkles) if is_built_in and head.wrinkles else head.wrinkles,
         fade=head.fade() if isinstance(head, FittedHead) else None,

@@ -18,7 +18,7 @@ import scipy
 
 from ...geometry.arrays import Floats32, Floats64
 from ..loading import load
-from ..smooth import smooth_step
+from ..smooth import shrunk, smooth_step
 
 SEGMENT_COUNT = 5  # straight segments of each hair
 
@@ -182,3 +182,21 @@ def stubble(size: int) -> Floats32:
     # Stubble ends on the neck, although the map of the beard continues around it.
     front = (1.0 - smooth_step(0.26, 0.3, across)) * (1.0 - smooth_step(0.84, 0.93, down))
     return np.asarray(hairs * front, dtype=np.float32)
+
+
+@lru_cache(maxsize=1)
+def shrunk_stubble(size: int, shrink: int) -> Floats32:
+    """Average `stubble(size)` over blocks of `shrink` x `shrink` texels."""
+    return shrunk(stubble(size), shrink)
+
+
+def soft_beard(beard: Floats32, beside_lips: Floats32) -> Floats32:
+    """Soften the ragged edge of the map of the beard (H, W), and keep its narrow moustache.
+
+    beside_lips: 0 on lips to 1 elsewhere, (H, W). Lips do not count in means, and the beard grows
+    by half of what the blur takes from its edges.
+    """
+    blur, growth = 10.0, 13  # [texels]
+    grown = scipy.ndimage.maximum_filter(beard, growth) * beside_lips
+    dense, counted = (scipy.ndimage.gaussian_filter(each, blur) for each in (grown, beside_lips))
+    return np.asarray(beside_lips * dense / np.maximum(counted, 0.01), np.float32)

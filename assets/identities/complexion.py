@@ -29,9 +29,10 @@ from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Segment, Wrinkles
+from ..oil import MAP_SIZE
 from ..pigments import BLOOD, SHAVED_HAIR, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
 from ..smooth import shrunk
-from .brows import painted, stubble
+from .brows import painted, shrunk_stubble, soft_beard
 from .eyes import beside_skin, with_irises
 from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
@@ -168,15 +169,9 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
     if features.lid_line > 0.0:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
-        hairs = _shrunk_stubble(shrink * len(kept), shrink)
+        hairs = shrunk_stubble(shrink * len(kept), shrink)
         kept = np.maximum(kept, np.float32(features.stubble) * hairs * tints.beard)
     return kept
-
-
-@lru_cache(maxsize=1)
-def _shrunk_stubble(size: int, shrink: int) -> Floats32:
-    """Average `stubble(size)` over blocks of `shrink` x `shrink` texels."""
-    return shrunk(stubble(size), shrink)
 
 
 def coloured(
@@ -220,7 +215,14 @@ def coloured(
         parts=_with_hair(person, parts, angle, features, behind),
         segments=_haired_segments(features, behind),
         in_tone=in_tone,
+        stubble=np.float32(features.stubble) * _coarse_beard() if features.stubble else None,
     )
+
+
+@lru_cache(maxsize=1)
+def _coarse_beard() -> Floats32:
+    """Return the density of a full beard in a map as small as that of oil, 0 to 1."""
+    return shrunk(_tints_of_size().beard, len(load("head").albedo) // MAP_SIZE)
 
 
 def _own_shape(person: Person) -> FineShape:
@@ -337,8 +339,7 @@ def _tints_of_size() -> _Tints:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.array(finer, dtype=np.float32)
-    beard_blur = 14.0  # [texels]
-    soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], beard_blur) * (1.0 - soft["lips"])
+    soft["beard"] = soft_beard(soft["beard"], 1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
     hair_colour = to_linear(SHIPPED_COMPLEXION.hair).astype(np.float32)

@@ -42,6 +42,7 @@ class Person(FittedHead):
     - mirror: as in the built-in head, although the left and the right half may differ.
     - identity: weights of the modes, and features.
     - in_tone: makes the albedo (H, W, 3) for another skin tone, ITA [deg].
+    - stubble: its density in a small map of the texture, 0 to 1; None: no stubble.
     """
 
     mandible_weight: Floats64
@@ -50,6 +51,7 @@ class Person(FittedHead):
     mirror: Integers32
     identity: Identity
     in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)
+    stubble: Floats32 | None = field(default=None, kw_only=True)
 
     def fade(self) -> None:
         """Do nothing: a shirt covers the lower edge of a person's neck."""
