@@ -27,6 +27,7 @@ from .surface import SkinSurface
 
 PAIR_GAP = 2.2  # mm: lips further apart at rest form no pair, or their red would fold at the line
 PRESSED_OVERLAP = 1.8  # mm of overlap of sealed lips when muscles act: smoothing thins a folded lip
+BALANCING_PASSES = 5  # further passes hardly change a stiffness
 SLIDE_DISTANCE = 3.0  # mm that the lower lip moves forward or in before it passes the upper one
 
 
@@ -165,6 +166,28 @@ def _point_beside(
     return (a, b), weight
 
 
+def _evenly_held(
+    own: Floats64, vertex: Integers32, beside: Integers32, weight: Floats64
+) -> Floats64:
+    """Return the stiffness of each pair, (P,), such that vertices are held alike for their areas.
+
+    Vertices of a sparse lip lie opposite every second vertex of a dense lip. Without this balance,
+    a weak seal would draw those out of the line of their neighbours. own: stiffness for the area of
+    each vertex, (V,).
+    """
+    members = np.column_stack([vertex, beside])
+    shares = np.column_stack([np.ones(len(vertex)), weight, 1.0 - weight])
+    strength = own[vertex]
+    total = strength.sum()
+    for _ in range(BALANCING_PASSES):
+        load = np.zeros(len(own))
+        np.add.at(load, members, strength[:, None] * shares)
+        fair = own[members] / np.maximum(load[members], 1e-12)
+        strength = strength * np.where(shares > 0.0, fair, np.inf).min(axis=1, initial=np.inf)
+        strength *= total / max(strength.sum(), 1e-12)
+    return strength
+
+
 def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipPairs:
     """Arrays of found pairs."""
     vertex = np.array([pair.vertex for pair in pairs], dtype=np.int32)
@@ -176,7 +199,7 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     paired = np.concatenate([vertex, first, second])
     count = np.bincount(paired, minlength=surface.vertex_count)
     most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
-    strength = seal * surface.areas[vertex]
+    strength = _evenly_held(seal * surface.areas, vertex, beside, weight)
     members = np.flatnonzero(count).astype(np.int32)
     lips = LipPairs(
         vertex=vertex,

@@ -57,6 +57,13 @@ def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
         assert slit < SHUT_GAP, mesh
 
 
+def test_a_wrinkled_nose_keeps_the_lips_shut(simulation, slits):
+    """Action unit 9 lifts both lips with the nose, and shows no teeth beside their middle."""
+    settled_displacement(simulation, {"AU9": 1.0})
+    for mesh, slit in slits().items():
+        assert slit < SHUT_GAP, mesh
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("sides", "strength"),
