@@ -8,7 +8,7 @@ import numpy as np
 
 from .brows import Brows, drawn_brows
 from .eyes import USUAL_IRIS, Iris, drawn_iris
-from .hair import Hairline, drawn_hairline
+from .hairline import Hairline, drawn_hairline
 from .population import ONLY_BROWN
 from .space import Identity, Sex
 

@@ -85,64 +85,6 @@ HAIR_CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
 )
 
 
-@dataclass(frozen=True)
-class Hairline:
-    """A person's hairline, compared with the built-in head's.
-
-    front: distance behind the built-in hairline at the midline [mm].
-    temples: further distance at the corners of the forehead [mm].
-    crown: baldness of the crown, 0 to 1.
-    """
-
-    front: float = 0.0
-    temples: float = 0.0
-    crown: float = 0.0
-
-    def shift(self, size: int, rows: slice = slice(None)) -> Floats32:
-        """Compute distances behind the built-in hairline [mm], for `rows` of a (size, size) map."""
-        across = np.linspace(-0.5, 0.5, size)
-        up = np.linspace(1.0, 0.0, size)
-        row = self.front * np.exp(-((across / 0.17) ** 4))
-        row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
-        # Real hairlines are uneven, so each person's has other notches and tongues.
-        turn = self.front + self.temples
-        row += 1.3 * np.sin(107.0 * across + turn) + 1.1 * np.sin(241.0 * across + 3.0 * turn)
-        ahead = 1.0 - smooth_step(0.74, 0.82, up)
-        bald_depth = 40.0  # [mm] that a wholly bald crown shifts the hairline
-        beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
-        top = np.exp(-(((up - 0.78) / 0.15) ** 2))
-        ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
-        whole = np.multiply.outer(ahead[rows], row)
-        whole += np.multiply.outer(top[rows], beside)
-        return np.asarray(whole, np.float32)
-
-
-def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:
-    """Choose a random hairline for a person of this sex and age [years].
-
-    Straight, round and M-shaped hairlines are as frequent as among 456 persons: 43, 39 and 18 % of
-    women, 46, 11 and 43 % of men. The hairline of men lies 4.5 mm higher. Source: Kashiyama and
-    others 2021, "Hairline morphology", Plast. Reconstr. Surg. Glob. Open 9:e3765. How much the
-    hairline recedes with age is chosen by eye.
-    """
-    kind, _, share, bald = random.uniform(0.0, 1.0, 4)
-    front = float(np.clip(random.normal(0.0, 3.0), -6.0, 6.0))
-    straight, round_ = (0.46, 0.57) if is_man else (0.43, 0.82)
-    if kind < straight:
-        temples = 0.0
-    elif kind < round_:
-        temples = -5.0
-    else:
-        temples = 6.0 + 6.0 * share
-    late = max(years - 25.0, 0.0) / 50.0
-    receded = 22.0 * late * share**0.7 if is_man else 3.0 * late
-    return Hairline(
-        front=(0.5 if is_man else -2.0) + front + 0.6 * receded,
-        temples=temples + (receded if is_man else 0.0),
-        crown=float(is_man and bald < 0.5 * late),
-    )
-
-
 class Scalp(NamedTuple):
     """The skin on which hair grows, as a triangle mesh.
 
@@ -188,10 +130,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
     way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
-    clearance = 0.5  # [mm] over the skin
     way = _over_skin(way, points, normals, scalp, long)
-    sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
-    off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
+    off = _heights_of_roots(cut, behind, points[:, 2] - middle[2])
     points = points + off[:, None] * normals
     uneven = _hem_offsets(radius * angle)
     hem_depth = 20.0  # [mm] over which hair becomes dense
@@ -219,6 +159,21 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     hangs = _hangs(cut, points - middle, normals, behind, height)
     inside = from_within(_with_dense_hem(hair), faces[hangs[faces].all(axis=1)])
     return inside, hair, locks_on(hair, growth)
+
+
+def _heights_of_roots(cut: Cut, behind: Floats64, ahead: Floats64) -> Floats64:
+    """Return heights of the roots of strands over the skin [mm], (n,).
+
+    behind: distances behind the hairline [mm], (n,). ahead: distances in front of the head's centre
+    [mm], (n,).
+    """
+    clearance = 0.5  # [mm]
+    sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
+    off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
+    if cut.knot:  # else light passes between nape and hair that is seen edge-on
+        nape_depth = 20.0  # [mm] behind the head's centre, where hair begins below the skin
+        off -= 0.8 * smooth_step(30.0, 10.0, behind) * (ahead < -nape_depth)
+    return np.asarray(off)
 
 
 def _hangs(

@@ -32,7 +32,7 @@ from risorius.assets.identities.complexion import (
     typology_angle,
 )
 from risorius.assets.identities.eyes import Iris, drawn_iris
-from risorius.assets.identities.hair import Hairline
+from risorius.assets.identities.hairline import Hairline
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.assets.model import Segment
 from risorius.assets.pigments import SHIPPED_COMPLEXION

@@ -21,7 +21,8 @@ from risorius.assets.identities import (
     person_called,
     sample_identity,
 )
-from risorius.assets.identities.hair import HAIR_CUTS, Fall, Hairline
+from risorius.assets.identities.hair import HAIR_CUTS, Fall
+from risorius.assets.identities.hairline import Hairline
 from risorius.assets.identities.long_hair import _between_ways, _skin_reach
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors

@@ -123,16 +123,29 @@ def test_tied_hair_lies_smooth(number):
     assert np.percentile(height, 90.0) < 3.0
 
 
+def clear_dots(number, view):
+    """The number of pixels of background within a picture of 1000 x 1000 pixels."""
+    is_clear = picture(number, view, (1000, 1000))[..., 3] < 200.0
+    regions, _ = label(is_clear, np.ones((3, 3)))
+    outer = np.concatenate([regions[0], regions[-1], regions[:, 0], regions[:, -1]])
+    return (~np.isin(regions, outer)).sum()
+
+
 @pytest.mark.parametrize("view", ["20,-20", "30,-15"])
 def test_no_light_shines_below_the_hem_of_tied_hair(view):
     """From below, no dots of background show between skin and hair of person 91000190.
 
     Once the view 20,-20 had 150 of them, and 30,-15 had 42.
     """
-    is_clear = picture(91000190, view, (1000, 1000))[..., 3] < 200.0
-    regions, _ = label(is_clear, np.ones((3, 3)))
-    outer = np.concatenate([regions[0], regions[-1], regions[:, 0], regions[:, -1]])
-    assert (~np.isin(regions, outer)).sum() < 5
+    assert clear_dots(91000190, view) < 5
+
+
+@pytest.mark.parametrize(
+    ("number", "view", "most"), [(8, "-60,10", 40), (11, "60,20", 10), (92000104, "15,0", 10)]
+)
+def test_no_light_shines_between_tied_hair_and_nape_or_ears(number, view, most):
+    """No row of dots lies between tied hair and skin; there were 106, 41 and 42 of them."""
+    assert clear_dots(number, view) < most
 
 
 @pytest.mark.parametrize(("name", "least"), [(3, 300), (8, 300), (11, 60), (66, 60)])
