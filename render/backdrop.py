@@ -7,10 +7,8 @@ import numpy as np
 
 from .camera import PlacedView
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget
+from .render_target import PICTURE_UNIT, Rectangle, RenderTarget
 from .style import Background, MapBackground
-
-_MAP_UNIT = 4  # texture unit while a map is painted
 
 # A viewport, its painted part, and the vertical field of view of a map [deg], 0 for a gradient.
 _Area = tuple[Rectangle, Rectangle, float]
@@ -84,7 +82,7 @@ class _MapPainter:
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
         self._program = compile_program(gl, "background.glsl", "MAP")
-        self._program["radiance"] = _MAP_UNIT
+        self._program["radiance"] = PICTURE_UNIT
         self._triangle = gl.vertex_array(self._program, [])
         self._painted: MapBackground | None = None
         self._texture: moderngl.Texture | None = None
@@ -100,7 +98,7 @@ class _MapPainter:
         half = np.tan(np.radians(lens) / 2.0)
         self._program["half_size"] = half * width_for_height, half
         self._program["turn"] = np.radians(background.turn)
-        self._texture.use(_MAP_UNIT)
+        self._texture.use(PICTURE_UNIT)
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
 
     def _uploaded(self, background: MapBackground) -> moderngl.Texture:

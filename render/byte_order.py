@@ -11,13 +11,12 @@ from typing import Any
 
 import moderngl
 
-from .render_target import NewTexture, clamped_texture
+from .render_target import PICTURE_UNIT, NewTexture, clamped_texture
 
 _TEXTURE_2D = 0x0DE1
 _RGBA_FORMAT = 0x1908
 _BGRA_FORMAT = 0x80E1
 _UNSIGNED_BYTE = 0x1401
-_TEXTURE_UNIT = 4  # texture unit while a texture is made
 
 
 def window_textures(gl: moderngl.Context, address_of: Callable[[str], Any]) -> NewTexture:
@@ -35,7 +34,7 @@ def window_textures(gl: moderngl.Context, address_of: Callable[[str], Any]) -> N
     def new_texture(size: tuple[int, int]) -> moderngl.Texture:
         """Make a texture of a size [pixels]."""
         texture = clamped_texture(gl, size)
-        texture.use(_TEXTURE_UNIT)
+        texture.use(PICTURE_UNIT)
         request(_TEXTURE_2D, 0, _RGBA_FORMAT, *size, 0, _BGRA_FORMAT, _UNSIGNED_BYTE, None)
         return texture
 

@@ -14,9 +14,7 @@ import moderngl
 
 from .edges import EdgeSmoother
 from .programs import compile_program
-from .render_target import NewTexture, Rectangle, RenderTarget, scaled
-
-_TEXTURE_UNIT = 4  # texture unit while enlarging
+from .render_target import PICTURE_UNIT, NewTexture, Rectangle, RenderTarget, scaled
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class Compositor:
         self._colour = new_texture(size)
         self.frame = gl.framebuffer([self._colour])
         program = compile_program(gl, "stretch.glsl")
-        program["scene"] = _TEXTURE_UNIT
+        program["scene"] = PICTURE_UNIT
         self._plain = gl.vertex_array(program, [])
         self._smoother: EdgeSmoother | None = None
 
@@ -107,7 +105,7 @@ class Compositor:
         is_enlarged = picture.size != self.size
         picture.filter = (moderngl.LINEAR if is_enlarged else moderngl.NEAREST,) * 2
         gl.disable(moderngl.DEPTH_TEST)
-        picture.use(_TEXTURE_UNIT)
+        picture.use(PICTURE_UNIT)
         self._plain.render(moderngl.TRIANGLES, vertices=3)
         gl.enable(moderngl.DEPTH_TEST)
 
@@ -131,7 +129,7 @@ class Compositor:
         """Draw a label (h, w, 4) into the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
-        gl.texture((width, height), 4, image[::-1].tobytes()).use(_TEXTURE_UNIT)
+        gl.texture((width, height), 4, image[::-1].tobytes()).use(PICTURE_UNIT)
         gl.viewport = x, y, width, height
         gl.enable_only(moderngl.BLEND)
         gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA

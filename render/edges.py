@@ -7,9 +7,7 @@ half the time of a single pass, because the early depth test skips pixels withou
 import moderngl
 
 from .programs import compile_program
-from .render_target import NewTexture, Rectangle, RenderTarget
-
-_TEXTURE_UNIT = 4  # texture unit of the scene
+from .render_target import PICTURE_UNIT, NewTexture, Rectangle, RenderTarget
 
 
 class EdgeSmoother:
@@ -34,7 +32,7 @@ class EdgeSmoother:
     def _pass(self, *defines: str) -> moderngl.VertexArray:
         """Make a pass over all pixels of the scene with some defines."""
         program = compile_program(self._gl, "edges.glsl", *defines)
-        program["scene"] = _TEXTURE_UNIT
+        program["scene"] = PICTURE_UNIT
         return self._gl.vertex_array(program, [])
 
     def smooth(self, scene: RenderTarget, area: Rectangle | None) -> None:
@@ -49,7 +47,7 @@ class EdgeSmoother:
         gl = self._gl
         gl.scissor = None
         gl.copy_framebuffer(self.frame, scene.frame)
-        scene.colour.use(_TEXTURE_UNIT)
+        scene.colour.use(PICTURE_UNIT)
         gl.enable_only(moderngl.DEPTH_TEST)
         self._edges.use()
         self._edges.clear(depth=1.0)

@@ -16,6 +16,7 @@ from .errors import GLError
 Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 NewTexture = Callable[[tuple[int, int]], moderngl.Texture]
 """Makes a texture of four bytes per texel that is clamped at its borders, of a size [pixels]."""
+PICTURE_UNIT = 4  # texture unit of the picture that a pass reads or makes, beside those of the skin
 
 
 class RenderTarget:

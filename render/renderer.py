@@ -69,7 +69,6 @@ class Renderer:
         self._shadow_map: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
         self._mixer: Mixer | None = None
-        self._overlays = OverlayPainter(surface, self._program)
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of limited numbers of vertices and triangles (see `Stream`)."""
@@ -163,8 +162,10 @@ class Renderer:
             self._draw_skin(frame, view, shadow)
         self._draw_parts(later, frame.style, view, shadow)
         self._smooth(frame, view, parts, with_skin=True)
+        # It is not stored, because renderer and painter would keep each other and leak.
+        painter = OverlayPainter(self.surface, self._program)
         for overlay in frame.overlays:
-            self._overlays.draw(overlay, view)
+            painter.draw(overlay, view)
 
     def _smooth(
         self, frame: Frame, view: PlacedView, parts: Sequence[PlacedBuffers], *, with_skin: bool

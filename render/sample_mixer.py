@@ -14,10 +14,15 @@ import moderngl
 from .camera import PlacedView
 from .coverage import Coverage, Drawn
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget, around
+from .render_target import PICTURE_UNIT, Rectangle, RenderTarget, around
 
 # Sampler -> texture unit.
-_TEXTURE_UNITS = {"colours": 4, "sample_numbers": 5, "sample_depths": 6, "surfaces": 7}
+_TEXTURE_UNITS = {
+    "colours": PICTURE_UNIT,
+    "sample_numbers": 5,
+    "sample_depths": 6,
+    "surfaces": 7,
+}
 
 
 class Mixer(Protocol):

@@ -121,15 +121,7 @@ def _part_surface(placed: PlacedBuffers, cut: CutPlane | None, view: PlacedView)
         sunk = _multiplied(positions + beyond * unit_vectors(positions), view.projection)
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
     values = np.zeros((len(positions), 2))
-    triangles = placed.buffers.faces.astype(np.int32, copy=False)
-    return _Surface(
-        corners=clip,
-        values=values,
-        triangles=triangles,
-        kind=SURFACE_KIND,
-        numbers=part_numbers(placed),
-        has_back=False,
-    )
+    return _surface_of(placed, clip, values, SURFACE_KIND)
 
 
 def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
@@ -146,12 +138,16 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     facing = np.abs((normals * unit_vectors(positions)).sum(axis=1))
     values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
     clip = _multiplied(positions, view.projection)
-    triangles = placed.buffers.faces.astype(np.int32, copy=False)
+    return _surface_of(placed, clip, values, HAIR_KIND)
+
+
+def _surface_of(placed: PlacedBuffers, clip: Floats64, values: Floats64, kind: int) -> _Surface:
+    """Return the front of a part with these corners in clip space, (V, 4), and values, (V, 2)."""
     return _Surface(
         corners=clip,
         values=values,
-        triangles=triangles,
-        kind=HAIR_KIND,
+        triangles=placed.buffers.faces.astype(np.int32, copy=False),
+        kind=kind,
         numbers=part_numbers(placed),
         has_back=False,
     )

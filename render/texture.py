@@ -15,7 +15,7 @@ from .surface import Image, Surface, is_software
 
 _SAMPLED_TEXELS = 10_000  # approximate number of texels for the median of redness
 LIGHTNESS_WEIGHTS = 0.3, 0.6, 0.1  # weights of red, green and blue in lightness
-# Texture units; 4 is for a window's enlargement.
+# Texture units; 4 is `render_target.PICTURE_UNIT`.
 _BUMP_UNIT = 5
 _AROUND_UNIT = 6
 _FINE_UNIT = 7
