@@ -8,15 +8,17 @@ from typing import Any
 
 import pytest
 
-from risorius.app import motion
+from risorius.app import motion, scenes
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script.key_sets import NO_KEYS
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
+from risorius.app.viewer.picture.portraits import Portraits
 from risorius.app.viewer.session.session import Session, Work
 from risorius.app.viewer.settings import Display, Settings
+from risorius.assets.fitting import FittedHead
 
 from .driving import HELLO_FILE, SIZE, replace_state, settle, xdotool
 
@@ -48,8 +50,15 @@ def viewer() -> Iterator[Viewer]:
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
         opened.settings.is_alive = False  # so that compared pictures do not move
+        draw_few_portraits(opened.context.portraits)
         settle(opened)
         yield opened
+
+
+def draw_few_portraits(portraits: Portraits) -> None:
+    """Draw pictures of two persons only, because all 25 keep a core busy for a minute."""
+    begin = portraits.begin
+    portraits.begin = lambda people: begin(people[:2])  # type: ignore[method-assign]
 
 
 @pytest.fixture
@@ -97,6 +106,24 @@ def shared_scenes() -> Iterator[None]:
             "build_scene",
             lambda name, head=None: shared(name) if head is None else built(name, head),
         )
+        yield
+
+
+@pytest.fixture(scope="module")
+def shared_fits() -> Iterator[None]:
+    """Commands of a file fit a head once, unless its files change."""
+    fit = scenes.fit_users_head
+    fitted: dict[object, FittedHead] = {}
+
+    def fit_once(head: Path, landmarks: Path | None) -> FittedHead:
+        files = [path for path in (head, landmarks) if path is not None and path.is_file()]
+        key = head, landmarks, tuple(path.stat().st_mtime_ns for path in files)
+        if key not in fitted:
+            fitted[key] = fit(head, landmarks)
+        return fitted[key]
+
+    with pytest.MonkeyPatch.context() as this_process:
+        this_process.setattr(scenes, "fit_users_head", fit_once)
         yield
 
 

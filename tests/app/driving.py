@@ -28,7 +28,7 @@ NEEDS_A_SCREEN = [
     ),
 ]
 HELLO_FILE = Path(__file__).parents[2] / "docs" / "hello.toml"
-SIZE = (900, 600)  # size of the window that tests share
+SIZE = (760, 520)  # size of the window that tests share
 DEADLINE = 60.0  # [s] limit for an answer that an idle machine gives at once
 LEAST_FRAMES = 10  # frames shown before a deadline counts: one that loads a head may last longer
 STEADY_FRAMES = 3  # equal frames, after which no panel moves

@@ -17,7 +17,8 @@ FIRST_PARTS = ("eyeball_left", "tongue")  # parts before the skin in the file
 def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[str, slice]]:
     """Write the built-in head with its parts, in centimetres; return each part's vertices.
 
-    The skin has texture coordinates, normals and a material with a picture.
+    The skin has texture coordinates, normals and a material with a picture. Of the locks of hair
+    only a fortieth is written, because each of them is a piece of the file.
     """
     scene.reset()
     parts = {part.name: part for part in scene.parts if part.name != "wet_edges"}
@@ -29,6 +30,9 @@ def write_whole_head(folder: Path, scene: FaceScene) -> tuple[Path, Path, dict[s
         is_skin = name == "skin"
         points = scene.rest_positions if is_skin else np.float64(parts[name].vertices)
         faces = scene.faces if is_skin else parts[name].faces
+        if name == "hair_locks":
+            points = points[: len(points) // 40]
+            faces = faces[(faces < len(points)).all(axis=1)]
         lines.append(f"g {name}\nusemtl {'skin' if is_skin else 'parts'}")
         lines += [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in points * CENTIMETRES_PER_MILLIMETRE]
         if is_skin:

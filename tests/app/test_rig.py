@@ -29,6 +29,8 @@ from .command_line import refusal, risorius, shape_keys_in_blender, succeeded
 from .glb_player import Player, document
 from .rig_files import LIBRARY_NAME, PICTURE_NAME, write_whole_head
 
+pytestmark = pytest.mark.usefixtures("shared_fits")
+
 METRES_PER_MILLIMETRE = 0.001
 INVISIBLE_ERROR = 0.02  # [mm], an invisible distance
 
@@ -153,7 +155,7 @@ class Whole:
 
 
 @pytest.fixture(scope="module")
-def whole(scene: FaceScene, tmp_path_factory: pytest.TempPathFactory) -> Whole:
+def whole(scene: FaceScene, shared_fits: None, tmp_path_factory: pytest.TempPathFactory) -> Whole:
     """The avatar of an OBJ file."""
     folder = tmp_path_factory.mktemp("whole")
     mesh, landmarks, places = write_whole_head(folder, scene)

@@ -12,11 +12,13 @@ from risorius.app.rig.poses import rest_in
 from .command_line import refusal, risorius, succeeded
 from .glb_player import Player, document
 
+pytestmark = pytest.mark.usefixtures("shared_fits")
+
 METRES_PER_MILLIMETRE = 0.001
 
 
 @pytest.fixture(scope="module")
-def copied(scene, tmp_path_factory):
+def copied(scene, shared_fits, tmp_path_factory):
     """A GLB with bones, shapes, motion and extras, and its avatar."""
     folder = tmp_path_factory.mktemp("glb")
     own = folder / "own.glb"

@@ -137,7 +137,11 @@ def test_an_early_stop_leaves_no_process():
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 @pytest.mark.parametrize(
     "number",
-    [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
+    [
+        signal.SIGINT,
+        pytest.param(signal.SIGKILL, marks=pytest.mark.slow),
+        pytest.param(signal.SIGTERM, marks=pytest.mark.slow),
+    ],
 )
 def test_nothing_runs_on_when_it_is_stopped(tmp_path, number):
     """Ctrl-C, `kill`, and a sudden end of the calling process stop all work."""

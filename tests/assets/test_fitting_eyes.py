@@ -113,7 +113,9 @@ def _ball(centre, radius):
     return centre + radius * unit.vertices, unit.faces
 
 
-@pytest.mark.parametrize(("radius", "back"), [(14.1, 1.5), (18.0, 5.4)])
+@pytest.mark.parametrize(
+    ("radius", "back"), [pytest.param(14.1, 1.5, marks=pytest.mark.slow), (18.0, 5.4)]
+)
 def test_eyeballs_of_the_file_set_place_and_size(radius, back):
     """Eyes get the centre and size of the file's eyeballs, also of balls half as large again.
 

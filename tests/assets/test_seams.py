@@ -61,7 +61,14 @@ def test_triangles_of_their_own_vertices_hang_together(head, plain, tmp_path):
     assert_same(fit_head(tmp_path / "soup.obj", tmp_path / "soup.json"), plain)
 
 
-@pytest.mark.parametrize("way", ["bare", "pictured", "moved apart"])
+@pytest.mark.parametrize(
+    "way",
+    [
+        "bare",
+        pytest.param("pictured", marks=pytest.mark.slow),
+        pytest.param("moved apart", marks=pytest.mark.slow),
+    ],
+)
 def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
     """Lips that touch exactly are kept separate: with and without a picture, and with a shape."""
     upper, lower = (head.landmarks[lip] for lip in (UPPER_LIP_LANDMARKS, LOWER_LIP_LANDMARKS))
