@@ -113,7 +113,7 @@ check: setup
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/mypy docs/figures
+	@$(BIN)/mypy docs/figures docs/source_pages.py
 	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
 
 reproduce: setup opengl

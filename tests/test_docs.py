@@ -1,5 +1,6 @@
 """Pages keep their promises: links, pictures, commands, code, and the site."""
 
+import html
 import importlib
 import os
 import re
@@ -55,7 +56,7 @@ def test_links_lead_somewhere(page):
 def test_places_in_the_paper_page_exist():
     """Every file and name that docs/the_paper_in_code.md lists exists."""
     page = (ROOT / "docs" / "the_paper_in_code.md").read_text("utf-8")
-    places = re.findall(r"\| `([\w/.]+)(?:: (\w+))?`", page)
+    places = re.findall(r"\| \[`([\w/.]+)(?:: (\w+))?`\]\(\.\./\1\)", page)
     assert len(places) > 20
     for file, name in places:
         code = (ROOT / file).read_text("utf-8")
@@ -211,6 +212,19 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert result.returncode == 0, result.stdout + result.stderr
     assert not result.stderr
     return folder / "html"
+
+
+@pytest.mark.slow
+def test_links_to_code_lead_to_pages_of_the_site(site):
+    """The site has the code of each file to which a page links, though it lies outside docs/."""
+    page = (site / "the_paper_in_code" / "index.html").read_text(encoding="utf-8")
+    links = set(re.findall(r'href="\.\./(code/[\w/]+)/"', page))
+    assert "code/refine/kahler/table" in links
+    for link in links:
+        name = link.removeprefix("code/")
+        shown = html.unescape((site / link / "index.html").read_text(encoding="utf-8"))
+        first_line = (ROOT / f"{name}.py").read_text("utf-8").partition("\n")[0]
+        assert first_line.strip('"') in re.sub(r"<[^>]+>", "", shown)
 
 
 @pytest.mark.slow
