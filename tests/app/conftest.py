@@ -56,9 +56,9 @@ def viewer() -> Iterator[Viewer]:
 
 
 def draw_few_portraits(portraits: Portraits) -> None:
-    """Draw pictures of two persons only, because all 25 keep a core busy for a minute."""
+    """Draw pictures of three persons only, because all 25 keep a core busy for a minute."""
     begin = portraits.begin
-    portraits.begin = lambda people: begin(people[:2])  # type: ignore[method-assign]
+    portraits.begin = lambda people: begin(people[:3])  # type: ignore[method-assign]
 
 
 @pytest.fixture
