@@ -17,6 +17,8 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats32, Floats64
+from ...geometry.closest import MeshSearch
+from ...geometry.normals import cross_products
 from ..loading import load
 from ..smooth import shrunk, smooth_step
 
@@ -154,20 +156,28 @@ def _paint(cover: Floats32, hairs: Floats64, side: float, tones: Floats64) -> No
 
 def _on_texture(points: Floats64, side: float) -> Floats64:
     """Map points (x, y) seen from the front [mm], (n, 2), to columns and rows, 0 to 1, (n, 2)."""
-    across, down = _map()(points).T
+    seen = np.column_stack([points, np.zeros(len(points))])
+    across, down = _seen_from_front().closest(seen).interpolate(load("head").uv).T
     return np.stack([0.5 + side * (across - 0.5), 1.0 - down], axis=-1)
 
 
 @lru_cache(maxsize=1)
-def _map() -> scipy.interpolate.RBFInterpolator:
-    """Interpolate texture coordinates from points (x, y) [mm] around the left brow."""
+def _seen_from_front() -> MeshSearch:
+    """Return the triangles around the left brow, seen from the front: all z are 0.
+
+    The texture is linear in a triangle, so a smooth line of hairs stays smooth on the skin. A
+    smooth interpolation between vertices would bend the tails of brows at the temple.
+    """
     head = load("head")
     brow = scipy.spatial.cKDTree(head.vertices[head.landmarks[22:27]])
-    radius = 24.0  # [mm]; vertices within this distance of the brow are interpolated
-    near = np.flatnonzero(brow.query(head.vertices)[0] < radius)
-    hidden = np.concatenate([head.rings[f"eye_{row}_left"] for row in range(3)])
-    near = near[~np.isin(near, hidden) & (head.vertices[near, 2] > 30.0)]
-    return scipy.interpolate.RBFInterpolator(head.vertices[near, :2], head.uv[near].astype(float))
+    radius = 24.0  # [mm]; the brow and its hairs lie within this distance of its landmarks
+    near = brow.query(head.vertices)[0] < radius
+    near &= head.vertices[:, 2] > 30.0
+    near[np.concatenate([head.rings[f"eye_{row}_left"] for row in range(3)])] = False
+    flat = head.vertices * [1.0, 1.0, 0.0]
+    faces = head.faces[near[head.faces].all(axis=1)]
+    is_front = cross_products(flat, faces)[:, 2] > 0.0
+    return MeshSearch.from_mesh(flat, faces[is_front])
 
 
 @lru_cache(maxsize=1)

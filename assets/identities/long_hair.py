@@ -248,7 +248,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
     places = line + cut.knot * thick * (1.0 - deep * groove) * ring
     places[-1] = places[0]  # to the bit, or light shines through the seam
     lost_light = 0.5  # fraction of light that is lost below a knot and at a tail's tie
-    light = 1.0 - np.maximum(5.0 * deep * groove, lost_light * shade)
+    light = 1.0 - np.maximum(3.0 * deep * groove, lost_light * shade)
     across = count * wide * place[..., 0] / (2.0 * np.pi)
     shaded = light * colour
     tied = _layered_part(HAIR_NAME + "_tied", places, across, HAIR_HEIGHT, dense[:, 0], shaded)
