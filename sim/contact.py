@@ -101,18 +101,32 @@ def pair_lips(
     off_line = polyline_distance(x, line)
     at_edge = off_line < lip_edge
     width = abs(line[-1, 0] - line[0, 0])
-    at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * width
+    middle = (line[-1, 0] + line[0, 0]) / 2.0  # that of the lips may lie aside
+    at_edge &= np.abs(x[:, 0] - middle) < 0.51 * width
     own_side_level = 0.1  # value of the lip side field: nearer to the corner the lips are one
     upper = np.flatnonzero(at_edge & (lip_side > own_side_level))
     lower = np.flatnonzero(at_edge & (lip_side < -own_side_level))
     least_reach = _least_reach(surface, off_line)
+    corners = surface.nearest(line[[0, -1]])
     pairs = []
     for own, other, below in ((lower, upper, 1.0), (upper, lower, -1.0)):
         for i in own.tolist():
-            found = _point_beside(x, i, other, least_reach[i])
+            found = _point_beside(x, i, _with_corner(x, i, other, corners), least_reach[i])
             if found is not None:
                 pairs.append(_LipPair(i, *found, below))
     return _lip_pairs(surface, pairs, seal)
+
+
+def _with_corner(x: Floats64, vertex: int, other: Integers64, corners: Integers32) -> Integers64:
+    """Add the mouth's corner to the vertices of the other lip where all lie on one side.
+
+    The last vertices of coarse lips before a corner may have none opposite. corners: vertices at
+    the right and the left corner, (2,).
+    """
+    across = x[other, 0] - x[vertex, 0]
+    is_last = np.array([(across > 0.0).all(), (across < 0.0).all()])
+    added = corners[is_last & (corners != vertex)].astype(np.int64)
+    return np.concatenate([other, added])
 
 
 def _least_reach(surface: SkinSurface, off_line: Floats64) -> Floats64:

@@ -87,6 +87,7 @@ def paired_lips(above, below, gap):
         edges=np.zeros((0, 2), np.int32),
         lengths=np.zeros(0),
         spacing=np.full(above + below, 5.0),
+        nearest=lambda points: np.zeros(len(points), np.int32),
     )
     lip_side = np.where(is_upper, 1.0, -1.0)
     lips = pair_lips(surface, landmarks, lip_side, 2.0)
@@ -124,3 +125,20 @@ def test_no_vertex_of_a_dense_lip_is_held_more_firmly_than_its_neighbours():
     np.add.at(upper, lips.beside[~is_own, 1], ((1.0 - lips.weight) * lips.seal)[~is_own])
     inner = upper[1:-1]
     assert inner.max() < 1.6 * inner.min()
+
+
+def test_the_last_vertices_of_coarse_lips_are_in_pairs():
+    """A vertex beside a corner is in a pair, although the other lip has none nearer to the corner.
+
+    Otherwise teeth show there in a closed mouth. It also is if the lips' middle lies aside.
+    """
+    upper = [-15.0, 2.0, 20.0]
+    lower = [-8.0, 2.0, 12.0, 19.0]
+    across = np.array([-22.0, 24.0, *upper, *lower])  # first the corners
+    side = np.repeat([0.0, 1.0, -1.0], [2, len(upper), len(lower)])
+    landmarks = np.zeros((68, 3))
+    landmarks[60:68, 0] = [-22.0, -12.0, -3.0, 12.0, 24.0, 12.0, -3.0, -12.0]
+    faces = [[0, 5, 2], [5, 6, 2], [2, 6, 3], [3, 6, 7], [3, 7, 4], [7, 8, 4], [4, 8, 1]]
+    positions = np.stack([across, 0.5 * side, np.zeros(9)], axis=1)
+    lips = pair_lips(build_surface(positions, np.array(faces, np.int32)), landmarks, side, 1.0)
+    assert np.unique(lips.vertex).tolist() == [2, 3, 4, 5, 6, 7, 8]
