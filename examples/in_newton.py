@@ -82,7 +82,8 @@ def main() -> dict[str, float]:
     positions = state.particle_q.numpy()
     carried = embedding.evaluate(positions).positions  # every frame
 
-    is_coarse = (np.abs(fine[:, None] - rest) < 1e-6).all(axis=2).any(axis=1)
+    is_same_place = (np.abs(fine[:, None] - rest) < 1e-6).all(axis=2)
+    is_coarse = is_same_place.any(axis=1)
     errors = {
         "Newton's visual mesh, flat": shown - truth,
         "refine.Embedding": carried - truth,

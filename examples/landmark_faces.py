@@ -48,7 +48,9 @@ def cut_out(picture: PIL.Image.Image, points: np.ndarray) -> Face:
         box,
         PIL.Image.Resampling.BILINEAR,
     )
-    return np.array(cut).transpose(2, 0, 1), ((points - middle) / half).astype(np.float32)
+    channels = np.array(cut).transpose(2, 0, 1)
+    scaled = (points - middle) / half
+    return channels, scaled.astype(np.float32)
 
 
 def read_set(faces: Faces, numbers: list[int], is_on_bone: bool) -> list[Face]:
@@ -95,7 +97,12 @@ def _middle_face(cut: np.ndarray) -> np.ndarray:
     found = read_by_dlib(np.ascontiguousarray(cut.transpose(1, 2, 0)), 1)
     scaled = [points / (STORED_SIDE / 2) - 1.0 for points in found]
     nothing = np.full((68, 2), np.nan)
-    return min(scaled, key=lambda points: np.abs(points.mean(axis=0)).max(), default=nothing)
+    return min(scaled, key=_distance_from_middle, default=nothing)
+
+
+def _distance_from_middle(points: np.ndarray) -> float:
+    """Distance of the points' mean from the middle of the picture, along the farther axis."""
+    return float(np.abs(points.mean(axis=0)).max())
 
 
 def read_photographs(folder: Path) -> tuple[list[Face], list[Face]]:

@@ -118,7 +118,9 @@ def main() -> list[int]:
         refiners.register("quarters", Quarters)
     x, y = np.meshgrid(np.arange(5.0), np.arange(2.0))
     rest = np.stack([x.ravel(), y.ravel(), np.zeros(10)], axis=1)
-    faces = [(k, k + 1, k + 6) for k in range(4)] + [(k, k + 6, k + 5) for k in range(4)]
+    lower = [(k, k + 1, k + 6) for k in range(4)]
+    upper = [(k, k + 6, k + 5) for k in range(4)]
+    faces = lower + upper
     refiner = create("quarters", faces, rest, longest=1.4)
     counts = []
     for stretch in (1.0, 1.5, 2.0, 3.0):

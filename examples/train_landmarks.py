@@ -80,8 +80,10 @@ def _turned(pictures: Tensor, points: Tensor) -> tuple[Tensor, Tensor]:
     stretch = torch.exp(torch.randn(count) * 0.06)
     is_mirrored = torch.rand(count) < 0.5
     width = torch.where(is_mirrored, -stretch, stretch)
-    across = torch.stack([angle.cos() * width, -angle.sin(), torch.randn(count) * 0.08], dim=1)
-    down = torch.stack([angle.sin() * width, angle.cos(), torch.randn(count) * 0.08], dim=1)
+    shift_across = torch.randn(count) * 0.08
+    shift_down = torch.randn(count) * 0.08
+    across = torch.stack([angle.cos() * width, -angle.sin(), shift_across], dim=1)
+    down = torch.stack([angle.sin() * width, angle.cos(), shift_down], dim=1)
     changes = torch.stack([across, down], dim=1)
     changes[:, :, :2] *= size[:, None, None]
     inside, places = seen(pictures, points, changes)

@@ -29,10 +29,10 @@ and from jit.py (the compiler) and geometry/ beside this folder:
     kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
     beyond/     its options (options.py), other criteria and schemes, blending
     others.py   refiners to compare with
-    strain.py how far the skin is shortened
+    strain.py   how far the skin is shortened
     embedding/  a fine mesh that follows the smooth surface of a coarse one
     hosts.py    meshes as other programs keep them
-    port.py tables and rules, for authors who port the method
+    port.py     tables and rules, for authors who port the method
 
 Read border/plugin.py first, then kahler/. docs/refinement.md shows it with pictures.
 """

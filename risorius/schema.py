@@ -312,8 +312,10 @@ def _without_entry(document: Any, place: Sequence[int | str]) -> Any:
     if not isinstance(document, Mapping) or not keys or keys[0] not in document:
         return {}
     left = dict(document)
-    if len(keys) > 1 and isinstance(left[keys[0]], Mapping) and keys[1] in left[keys[0]]:
-        left[keys[0]] = _without_entry(left[keys[0]], keys[1:])
+    first, *inner_keys = keys
+    inner = left[first]
+    if inner_keys and isinstance(inner, Mapping) and inner_keys[0] in inner:
+        left[first] = _without_entry(inner, inner_keys)
     else:
-        del left[keys[0]]
+        del left[first]
     return left

@@ -139,18 +139,18 @@ class Eyes(Record):
     lower_lid_follows: Annotated[float, Within(0.0, 1.0)] = 0.3
     lid_reach: Annotated[float, Within(2.0, 30.0)] = 8.0  # mm from the margin to where the lid ends
     lid_plateau: Annotated[float, Within(0.0, 20.0)] = 2.0  # mm from the margin that move as one
-    # of the tarsal plate on the eyeball
+    # stiffness of the tarsal plate on the eyeball
     lid_stiffness: Annotated[float, Within(0.0, 1000.0)] = 120.0
     # share of the way that the lower lid comes up
     blink_meeting: Annotated[float, Within(0.0, 0.5)] = 0.12
     blink_slide: Annotated[Pair, Within(-5.0, 5.0)] = (0.0, 0.0)  # mm to the nose
     raise_slide: Annotated[float, Within(-10.0, 10.0)] = 0.0  # the same, for each rad of raising
     lids_follow_sideways: Annotated[float, Within(0.0, 1.0)] = 0.0  # share of the horizontal gaze
-    # mm from the upper margin: skin nearer than
+    # mm from the upper margin: nearer skin moves fully with the lid
     fold_plateau: Annotated[float, Within(0.0, 30.0)] = 2.0
-    # these moves with it in full, and at all
+    # mm from the upper margin: farther skin does not move with the lid
     fold_reach: Annotated[float, Within(2.0, 40.0)] = 8.0
-    # of the skin beyond the lid, while the lid moves
+    # stiffness of the skin beyond the lid, while the lid moves
     fold_stiffness: Annotated[float, Within(0.0, 1000.0)] = 0.0
 
 

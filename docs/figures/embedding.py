@@ -29,7 +29,9 @@ def embedding() -> Image:
     """The coarse sheet, the fine sheet moved in two ways, and the true fine sheet."""
     rest, faces = sheet(8)
     flat, fine_faces = sheet(160)
-    fine = flat + np.array([0.0, 0.0, 0.012]) * np.sin(45.0 * flat[:, [0]] + 20.0 * flat[:, [1]])
+    phase = 45.0 * flat[:, [0]] + 20.0 * flat[:, [1]]
+    height = np.array([0.0, 0.0, 0.012])
+    fine = flat + height * np.sin(phase)
     moved = folded(rest)
     flatly = FlatBinding(faces, rest, fine).evaluate(moved, offset=True)
     smoothly = refine.Embedding(faces, rest, fine).evaluate(moved).positions

@@ -91,11 +91,14 @@ def _palette() -> dict[int, Any]:
 def _grey(depth: npt.NDArray[Any], on: Flags) -> npt.NDArray[Any]:
     near = depth[on].min()
     far = depth[on].max()
-    return np.repeat(((60.0 + 195.0 * (far - depth) / (far - near)) * on)[..., None], 3, axis=2)
+    nearness = (far - depth) / (far - near)
+    grey = (60.0 + 195.0 * nearness) * on
+    return np.repeat(grey[..., None], 3, axis=2)
 
 
 def _directions(normal: npt.NDArray[Any], on: Flags) -> npt.NDArray[Any]:
-    shown: npt.NDArray[Any] = 127.5 * (1.0 + normal * [1.0, -1.0, -1.0]) * on[..., None]
+    upright = normal * [1.0, -1.0, -1.0]
+    shown: npt.NDArray[Any] = 127.5 * (1.0 + upright) * on[..., None]
     return shown
 
 

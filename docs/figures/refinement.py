@@ -80,7 +80,10 @@ class Diagram:
 def equilateral(centre: Place, side: float) -> Floats64:
     """Corners 0, 1, 2 of an upright triangle, counter-clockwise from the lower left, (3, 2)."""
     height = side * np.sqrt(3.0) / 2.0
-    offsets = np.array([[-side / 2, -height / 2], [side / 2, -height / 2], [0.0, height / 2]])
+    lower_left = (-side / 2, -height / 2)
+    lower_right = (side / 2, -height / 2)
+    top = (0.0, height / 2)
+    offsets = np.array([lower_left, lower_right, top])
     return np.asarray(np.asarray(centre, dtype=np.float64) + offsets)
 
 
@@ -124,7 +127,8 @@ def cases() -> Image:
     for number in range(27):
         column = number % columns
         row = number // columns
-        centre = ((column + 0.5) * cell, diagram.size[1] - 8 - row * (cell + 14) - cell / 2)
+        top = diagram.size[1] - 8 - row * (cell + 14)
+        centre = ((column + 0.5) * cell, top - cell / 2)
         splits = splits_of(number)
         triangulation(diagram, equilateral(centre, 0.78 * cell), splits)
         title = f"{number}: {''.join(map(str, splits))}, {len(subdivide(splits))}"

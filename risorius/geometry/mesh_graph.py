@@ -19,7 +19,8 @@ def edge_graph(edges: Integers, lengths: Floats64, vertex_count: int) -> sparse.
 def length_graph(vertices: Floats64, faces: Integers) -> sparse.csr_array:
     """The graph of the edges of triangles (F, 3), with the distances of vertices (V, 3)."""
     edges = edges_of(faces)
-    lengths = np.linalg.norm(np.diff(vertices[edges], axis=1)[:, 0], axis=1)
+    along = vertices[edges[:, 1]] - vertices[edges[:, 0]]
+    lengths = np.linalg.norm(along, axis=1)
     return edge_graph(edges, np.maximum(lengths, 1e-9), len(vertices))
 
 

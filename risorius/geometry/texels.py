@@ -37,9 +37,11 @@ class Texels:
         """
         height, width = size
         pixels = corners * [width, -height] + [-0.5, height - 0.5]
-        low = np.ceil(pixels.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
-        high = np.floor(pixels.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
-        boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
+        first = np.ceil(pixels.min(axis=1) - margin)
+        last = np.floor(pixels.max(axis=1) + margin)
+        low = first.clip(0, [width, height])
+        high = last.clip(-1, [width - 1, height - 1])
+        boxes = np.concatenate([low, high], axis=1).astype(np.int64)
         sides = np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0)
         most_tries = 60_000_000  # a usual layout needs at most two entries for each texel
         if sides.prod(axis=1).sum() > most_tries:

@@ -19,6 +19,7 @@ from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit_head
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.sides import sides_of
 from tests.heads import user_head
 
 from .command_line import risorius
@@ -67,7 +68,7 @@ def check_surface(part):
     assert 0.0 <= part.colours.min()
     assert part.colours.max() <= 1.0
     assert np.abs(norm(part.normals, axis=1) - 1.0).max() < 1e-3
-    edges = np.concatenate([part.faces[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+    edges = sides_of(part.faces)
     known, count = np.unique(edges, axis=0, return_counts=True)
     often = dict(zip(map(tuple, known.tolist()), count.tolist(), strict=True))
     unpaired = [edge for edge, times in often.items() if often.get(edge[::-1]) != times]

@@ -183,9 +183,8 @@ def halved(mesh):
     edges, number = np.unique(sides, axis=0, return_inverse=True)
     a, b, c = mesh.faces.T
     ab, bc, ca = len(mesh.vertices) + number.reshape(3, -1)
-    faces = np.vstack(
-        [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    )
+    quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+    faces = np.vstack([np.stack(each, axis=1) for each in quarters])
     middles = mesh.vertices[edges].mean(axis=1)
     return Mesh(np.vstack([mesh.vertices, middles]), faces.astype(np.int32))
 

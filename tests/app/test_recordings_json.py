@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from pytest import approx
+from scipy.spatial.transform import Rotation
 
 from risorius.app.errors import UserError
 from risorius.app.recordings.names import ARKIT_SHAPES
@@ -132,9 +133,9 @@ def test_several_faces(tmp_path):
 @pytest.mark.parametrize("layout", ["rows", "columns", "data"])
 def test_the_matrix_of_the_head(layout, tmp_path):
     """A head turned 20 degrees to its left, in all layouts of MediaPipe's matrix."""
-    cos = np.cos(np.radians(20.0))
-    sin = np.sin(np.radians(20.0))
-    matrix = np.array([[cos, 0, sin, 1.0], [0, 1, 0, 2.0], [-sin, 0, cos, -40.0], [0, 0, 0, 1.0]])
+    matrix = np.eye(4)
+    matrix[:3, :3] = Rotation.from_euler("y", 20.0, degrees=True).as_matrix()
+    matrix[:3, 3] = [1.0, 2.0, -40.0]
     packed = {
         "rows": [matrix.tolist()],
         "columns": [matrix.T.ravel().tolist()],
@@ -149,10 +150,8 @@ def test_the_matrix_of_the_head(layout, tmp_path):
 
 def test_the_nod_and_tilt_of_a_matrix(tmp_path):
     """A nod up and a tilt to the left shoulder are positive; x is to the subject's left, y up."""
-    up = np.radians(10.0)
-    tilt = np.radians(15.0)
-    nod = np.array([[1, 0, 0], [0, np.cos(up), np.sin(up)], [0, -np.sin(up), np.cos(up)]])
-    roll = np.array([[np.cos(tilt), np.sin(tilt), 0], [-np.sin(tilt), np.cos(tilt), 0], [0, 0, 1]])
+    nod = Rotation.from_euler("x", -10.0, degrees=True).as_matrix()
+    roll = Rotation.from_euler("z", -15.0, degrees=True).as_matrix()
     for turn, name, angle in ((nod, "head_pitch", 10.0), (roll, "head_roll", 15.0)):
         matrix = np.eye(4)
         matrix[:3, :3] = turn

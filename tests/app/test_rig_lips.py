@@ -62,8 +62,10 @@ def test_skin_between_the_lids_shuts_with_them(shut, tmp_path):
     assert "oral_cavity_upper" in parts
     assert "eyeball_left" not in parts
     blink = player.shapes("head")["eyeBlinkLeft"]
-    upper, lower = (bulged + blink[: len(bulged)])[eye[[[1, 2], [5, 4]]], 1].mean(axis=1)
-    place = (bulged + blink[: len(bulged)])[middle, 1]
+    shut = bulged + blink[: len(bulged)]
+    upper = shut[eye[[1, 2]], 1].mean()
+    lower = shut[eye[[5, 4]], 1].mean()
+    place = shut[middle, 1]
     assert lower - 2.0 < place < upper + 2.0
 
 

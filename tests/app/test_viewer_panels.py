@@ -382,7 +382,7 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer):
     left, top, right, bottom = viewer.gui.places["Neutral"]
     result = subprocess.run(
         [sys.executable, "-m", "tests.app.dense_window"],
-        capture_output=True, text=True, timeout=120, check=False, cwd=Path(__file__).parents[2],
+        capture_output=True, text=True, timeout=300, check=False, cwd=Path(__file__).parents[2],
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     found = json.loads(result.stdout)

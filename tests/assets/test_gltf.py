@@ -227,7 +227,9 @@ def test_vertices_that_move_apart_are_two(maker, tmp_path, moved):
             {"JOINTS_0": maker.accessor(joints + bone, "u1"), "WEIGHTS_0": weights}
             for bone in (0, 1)
         ]
-    shapes = [np.zeros((3, 3)), np.tile([0, 0.1, 0] if moved == "shape" else [0, 0, 0.0], (3, 1))]
+    still = np.zeros((3, 3))
+    raised = np.tile([0, 0.1, 0], (3, 1))
+    shapes = [still, raised if moved == "shape" else still]
     parts = [
         maker.primitive(
             half, [0, 1, 2], attributes=own, targets=[{"POSITION": maker.accessor(added)}]

@@ -99,6 +99,12 @@ def test_mouth_is_darker_toward_the_throat(head):
         assert 0.01 < back < 0.75 * front, name
 
 
+def is_beside(points, least, most):
+    """Which points (n, 3) have a distance between two limits from the mirror plane."""
+    distance = np.abs(points[:, 0])
+    return (distance > least) & (distance < most)
+
+
 def test_gums_hold_the_teeth(head):
     """Every crown has its root in gum, and its visible height is that of real teeth."""
     for row, up in (("upper", 1.0), ("lower", -1.0)):
@@ -106,10 +112,11 @@ def test_gums_hold_the_teeth(head):
         gums = part(head, f"gums_{row}").vertices
         margin = up * gums[:, 1]
         for low, high, least, most in ((0.0, 9.0, 6.5, 10.0), (24.0, 30.0, 2.0, 7.0)):
-            beside = [(np.abs(p[:, 0]) > low) & (np.abs(p[:, 0]) < high) for p in (teeth, gums)]
-            crown = up * teeth[beside[0], 1]
-            assert crown.max() > margin[beside[1]].min() + 0.5
-            assert least < margin[beside[1]].min() + 1.5 - crown.min() < most, (row, low)
+            of_teeth, of_gums = (is_beside(each, low, high) for each in (teeth, gums))
+            crown = up * teeth[of_teeth, 1]
+            edge = margin[of_gums].min()
+            assert crown.max() > edge + 0.5
+            assert least < edge + 1.5 - crown.min() < most, (row, low)
 
 
 def test_the_tongue_lies_against_the_lower_crowns(head):

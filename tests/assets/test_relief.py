@@ -85,7 +85,10 @@ def _bends_beside(head, face, edge, distance):
     sampled = [
         scipy.ndimage.map_coordinates(slopes[..., axis], at.T[::-1], order=1) for axis in (0, 1)
     ]
-    weights = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), np.vstack([places.T, np.ones(9)]))
+    # Barycentric coordinates of the places have the sum 1.
+    corner_rows = np.vstack([corners.T, np.ones(3)])
+    place_rows = np.vstack([places.T, np.ones(9)])
+    weights = np.linalg.solve(corner_rows, place_rows)
     gradients = TextureGradients(head.faces, head.uv, head.face_uv)
     of_corners = gradients.measure(head.vertices.astype(float))[numbers].reshape(3, 2, 3)
     return np.einsum("kn,cn,cki->ni", np.array(sampled), weights, of_corners)

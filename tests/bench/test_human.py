@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from risorius import assets
 from risorius.app.errors import UserError
@@ -33,9 +34,8 @@ def space() -> IdentitySpace:
 
 def rest_of(space, vertices):
     """The residual outside the model space for a head that is turned and moved."""
-    c = np.cos(HEAD_TURN)
-    s = np.sin(HEAD_TURN)
-    moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
+    turn = Rotation.from_euler("y", HEAD_TURN)
+    moved = turn.apply(vertices) + np.array([3.0, -2.0, 4.0])
     normals = vertex_normals(moved, space.triangles)
     surface = HeadMesh(moved, space.triangles, normals, moved[space.landmarks])
     return unexplained(space, space.regions(), surface)

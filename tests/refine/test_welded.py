@@ -190,7 +190,9 @@ def vase():
     b = number[1:, :-1]
     c = number[1:, 1:]
     d = number[:-1, 1:]
-    faces = np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)])
+    first_half = np.stack([a, b, c], axis=2)
+    second_half = np.stack([a, c, d], axis=2)
+    faces = np.concatenate([first_half, second_half])
     return grid.reshape(-1, 3), faces.reshape(-1, 3)
 
 

@@ -17,7 +17,9 @@ def rim(width, height, z):
     """A lens-shaped rim, clockwise from the viewer's left, the upper half first."""
     count = render.Opening.RIM_POINTS
     t = np.arange(count) / count * 2.0 * np.pi
-    return np.stack([-0.5 * width * np.cos(t), 0.5 * height * np.sin(t), np.full(count, z)], axis=1)
+    x = -0.5 * width * np.cos(t)
+    y = 0.5 * height * np.sin(t)
+    return np.stack([x, y, np.full(count, z)], axis=1)
 
 
 def light(renderer, opening, style=PLAIN_STYLE):

@@ -46,7 +46,8 @@ def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) ->
     """The number of triangles whose normals turned by more than a right angle."""
 
     def normals(x: Array) -> Array:
-        return np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+        first, second, third = x[faces.T]
+        return np.cross(second - first, third - first)
 
     return int(((normals(rest) * normals(now)).sum(axis=1) < 0.0).sum())
 

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
+from risorius.geometry.sides import sides_of
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_edges import LID_COLUMNS, side_with_edges
@@ -84,7 +85,8 @@ def test_a_shut_lid_of_deep_set_eyes_lies_on_the_ball():
     moved = settled_displacement(simulation, shut)
     for eye in man.eyes:
         away = simulation.rest_positions + moved - eye.centre
-        is_lid = (np.abs(away[:, [0, 1]]) < [7.0, 4.0]).all(axis=1) & (away[:, 2] > 0.0)
+        is_before_ball = (np.abs(away[:, [0, 1]]) < [7.0, 4.0]).all(axis=1)
+        is_lid = is_before_ball & (away[:, 2] > 0.0)
         stands = norm(away[is_lid], axis=1) - eye.radius
         assert is_lid.sum() >= 8
         assert stands.max() < 4.8
@@ -95,7 +97,7 @@ def test_skin_beside_the_inner_corner_slides_along(simulation, head):
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     aside = settled_displacement(simulation, shut)[:, 0]
     corner = head.vertices[head.landmarks[42]]
-    edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    edges = sides_of(head.faces)
     away = head.vertices[edges] - corner
     is_near = (norm(away, axis=2) < 8.0).all(axis=1)
     edges = edges[is_near & (away[..., 0] < 0.0).any(axis=1)]

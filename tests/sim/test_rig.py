@@ -4,6 +4,7 @@ import copy
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from risorius import sim
 from risorius.sim.landmarks import LandmarkPoint, Side
@@ -151,10 +152,7 @@ def test_points_are_mirrored():
 
 def test_rig_moves_with_the_head(head):
     """A smile is the same on a head turned, moved and ten times smaller, with a guessed jaw."""
-    angle = np.radians(30.0)
-    turn = np.array(
-        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
-    )
+    turn = Rotation.from_euler("y", 30.0, degrees=True).as_matrix()
     plain = without(head, "eyes", "jaw_axis", "mandible_weight")
     other = copy.copy(plain)
     other.vertices = 0.1 * plain.vertices @ turn.T + (5.0, -3.0, 2.0)

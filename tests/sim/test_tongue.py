@@ -114,7 +114,8 @@ def test_the_tongue_pierces_nothing(simulation, head, pose):
     tongue = tongue_now(simulation)
     faces = part(head, "tongue").faces
     skin = with_middles(simulation.positions, head.faces)
-    skin = skin[(np.abs(skin[:, 0]) < 30.0) & (skin[:, 2] > 88.0) & (skin[:, 1] < -40.0)]
+    x, y, z = skin.T
+    skin = skin[(np.abs(x) < 30.0) & (z > 88.0) & (y < -40.0)]
     assert not is_within(skin, tongue, faces).any()
     for name in ("teeth_upper", "teeth_lower"):
         teeth = part(head, name)

@@ -101,7 +101,9 @@ def test_new_points_of_creases_lie_on_them(scheme):
     b = number[:-1, 1:]
     c = number[1:, 1:]
     d = number[1:, :-1]
-    faces = np.concatenate([np.stack([a, b, c], 2), np.stack([a, c, d], 2)]).reshape(-1, 3)
+    first_half = np.stack([a, b, c], axis=2)
+    second_half = np.stack([a, c, d], axis=2)
+    faces = np.concatenate([first_half, second_half]).reshape(-1, 3)
     refiner = refine.create(
         "kahler", faces, points, scheme=scheme, crease_angle=45.0, blend=False,
         criterion=Forced(np.full(len(refine.connect(faces, x.size).edges), 2)),
