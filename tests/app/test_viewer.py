@@ -1,21 +1,16 @@
 """The window, driven by real mouse and key events: sliders, skin, picture, questions."""
 
 import ctypes
-import os
 import subprocess
 import sys
-import time
 from copy import deepcopy
-from pathlib import Path
 
 import numpy as np
 import pytest
 from imgui_bundle import imgui
 from pytest import approx
 
-from risorius.app.compiling_note import COMPILING_TEXT
 from risorius.app.viewer.picture.highlights import pointed_lines
-from risorius.app.viewer.settings import Display, load_settings
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -36,7 +31,6 @@ from .driving import (
     write,
     xdotool,
 )
-from .light_files import write_map
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -152,7 +146,15 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
         assert np.allclose(viewer.face.view.camera.view_matrix(), view)
 
 
-@pytest.mark.parametrize("number", [30, 54, 19, -1])
+@pytest.mark.parametrize(
+    "number",
+    [
+        30,
+        pytest.param(54, marks=pytest.mark.slow),
+        pytest.param(19, marks=pytest.mark.slow),
+        -1,
+    ],
+)
 def test_the_wheel_zooms_to_the_mouse(viewer, number):
     """The point below the mouse, on skin or beside it, stays there while zooming in and out."""
     camera = viewer.face.view.camera
@@ -258,49 +260,6 @@ def test_an_idle_window_rests(viewer):
     assert times == {
         name: list(column) for name, column in viewer.context.times.milliseconds.items()
     }
-
-
-@pytest.mark.slow
-def test_the_window_remembers(tmp_path):
-    """`risorius replay --once` plays and ends; size and looks are restored.
-
-    A broken settings file is ignored.
-    """
-    script = tmp_path / "short.toml"
-    script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
-    environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
-    remembered = tmp_path / "risorius" / "viewer.json"
-    remembered.parent.mkdir()
-    remembered.write_text('{"size": ')
-    root = Path(__file__).parents[2]
-    command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
-
-    def replayed(*options):
-        """The stored settings after a replay with these options."""
-        result = subprocess.run(
-            [*command, *options], capture_output=True, text=True, timeout=60, check=False,
-            env=environment, cwd=root,
-        )  # fmt: skip
-        assert result.returncode == 0, result.stderr
-        assert set(result.stderr.splitlines()) <= {COMPILING_TEXT}
-        settings, complaint = load_settings(remembered)
-        assert complaint == ""
-        return settings
-
-    start = time.monotonic()
-    settings = replayed("--size", "500x400", "--style", "wireframe", "--look", "paper")
-    assert time.monotonic() - start > 0.6
-    assert settings.size == (500, 400)
-    assert settings.recent == [str(script)]
-    assert settings.display == Display(look="paper", wireframe=True)
-    assert replayed().display == settings.display
-    assert replayed("--look", "smooth").display == Display()  # chosen, though the default
-    sky = write_map(tmp_path / "sky.hdr")
-    relative = os.path.relpath(sky, root)
-    settings = replayed("--style", f"light={relative}")
-    assert settings.display == Display(light=str(root / relative))  # for windows in other folders
-    assert settings.recent == [str(script), str(root / relative)]
-    assert replayed().display == settings.display
 
 
 SMILE_MUSCLE = "zygomaticus_major"

@@ -191,7 +191,16 @@ def test_a_bad_folder_is_one_line(viewer, kind):
     assert not viewer.files.is_waiting
 
 
-@pytest.mark.parametrize("words", ["blendshape", "morph", "shape key", "ARKit", "avatar", "gltf"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        "blendshape",
+        *(
+            pytest.param(words, marks=pytest.mark.slow)
+            for words in ("morph", "shape key", "ARKit", "avatar", "gltf")
+        ),
+    ],
+)
 def test_search_finds_the_avatar(viewer, words):
     """Each usual word finds a button for the avatar's file."""
     show_controls(viewer, words)

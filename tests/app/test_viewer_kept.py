@@ -113,11 +113,16 @@ def test_an_unreadable_settings_file_is_reported(path, content):
     ("wrong", "fault"),
     [
         ({name: "zzz" for name in vars(Settings())}, "'theme': was 'zzz'"),
-        (
+        pytest.param(
             {"display": {"options": {"kahler": {"threshold_once": "x"}}}},
             "threshold_once was x, must be a number",
+            marks=pytest.mark.slow,
         ),
-        ({"display": {"light": "/nowhere/room.hdr"}}, "/nowhere/room.hdr: no such light map"),
+        pytest.param(
+            {"display": {"light": "/nowhere/room.hdr"}},
+            "/nowhere/room.hdr: no such light map",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_no_settings_prevent_the_window_from_opening(path, wrong, fault):
