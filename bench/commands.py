@@ -21,6 +21,9 @@ reference_option = click.option(
 needed_reference = click.option(
     "--reference", type=FOLDER_TYPE, required=True, help="A folder of `risorius bench reference`."
 )
+makehuman_option = click.option(
+    "--makehuman", type=FOLDER_TYPE, help="A folder with MakeHuman's base.obj and base.json."
+)
 size_option = click.option(
     "--size", type=Size(), default=(1280, 720), help="Size [pixels]; by default 1280x720."
 )
@@ -177,10 +180,22 @@ def bench_motion(reference: Path) -> None:
     conclude(motion.report(*found), motion.targets(*found))
 
 
+@bench.command("muscles")
+@makehuman_option
+@reference_option
+def bench_muscles(makehuman: Path | None, reference: Path | None) -> None:
+    """Measure where each muscle alone moves the skin, by region of the face.
+
+    The heads are the built-in head, and the heads in the folders of both options.
+    """
+    from . import muscles
+
+    rows = list(muscles.measure(makehuman, reference))
+    conclude(muscles.report(rows), muscles.targets(rows))
+
+
 @bench.command("avatar")
-@click.option(
-    "--makehuman", type=FOLDER_TYPE, help="A folder with MakeHuman's base.obj and base.json."
-)
+@makehuman_option
 @reference_option
 def bench_avatar(makehuman: Path | None, reference: Path | None) -> None:
     """Measure avatars: positions of vertices, sums of shapes, guessed landmarks.

@@ -31,7 +31,7 @@ OTHER_EXPRESSIONS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
         ("levator_labii_superioris_alaeque_nasi", 35, (0.0, 1.0, 0.0), 3.0),
         ("levator_labii_superioris", 52, (0.0, 1.0, 0.0), 3.0),
         ("zygomaticus_major", 54, (0.6, 0.6, -0.5), 8.0),
-        ("levator_anguli_oris", 54, (0.0, 1.0, 0.0), 1.0),
+        ("levator_anguli_oris", 54, (0.0, 1.0, 0.0), 4.0),
         ("risorius", 54, (0.9, 0.0, -0.4), 5.0),
         ("buccinator", 54, (0.4, 0.0, -0.9), 2.0),
         ("depressor_anguli_oris", 54, (0.0, -1.0, 0.0), 3.0),
@@ -86,14 +86,16 @@ def test_expressions_move_their_landmarks(simulation, head, name):
 def test_the_base_of_the_nose_hardly_lifts(simulation, head):
     """The base of the nose hardly rises in a sneer or under a raised lip.
 
-    Cartilage holds it, while wings and lip rise beside it.
+    Cartilage holds it, while wings and lip rise beside it. In a scanned sneer wings rise by 7.5 mm.
+    Under a raised lip they rise less than the lip: they rose as far, and nostrils opened upward.
     """
-    for shape, most, wings in (("noseSneer", 2.5, 7.0), ("mouthUpperUp", 1.6, 4.5)):
+    heights = (("noseSneer", 2.5, 7.0, 8.0), ("mouthUpperUp", 1.6, 2.0, 3.3))
+    for shape, most, least_of_wings, most_of_wings in heights:
         values = {f"{shape}Left": 1.0, f"{shape}Right": 1.0}
         moved = settled_displacement(simulation, values)
         assert 0.0 < moved_landmarks(head, moved, 33)[1] < most, shape
         assert 0.0 < moved_landmarks(head, moved, 30)[1] < most, shape
-        assert moved_landmarks(head, moved, 31, 35)[1] > wings, shape
+        assert least_of_wings < moved_landmarks(head, moved, 31, 35)[1] < most_of_wings, shape
         assert moved_landmarks(head, moved, 51)[1] > 4.5, shape
 
 

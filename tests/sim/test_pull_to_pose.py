@@ -82,13 +82,15 @@ def test_a_corner_pulled_up_and_back_smiles(simulation, head):
         (LEFT_CORNER, (0.0, -6.0, 0.0), {"depressor_anguli_oris_left"}),
         (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
         (LEFT_CORNER, (5.0, 0.0, 0.0), {"risorius_left", "zygomaticus_major_left"}),
+        (LEFT_CORNER, (0.0, 5.0, 0.0), {"levator_anguli_oris_left"}),
         (LEFT_LOWER_LIP, (0.0, -5.0, 0.0), {"depressor_labii_inferioris_left"}),
     ],
 )
 def test_skin_is_held_by_the_muscles_of_anatomy(simulation, head, landmark, offset, wanted):
     """Pulled brow, chin, corner, lid and lip are each held by the few muscles of anatomy.
 
-    The corner drawn outward moved the whole mouth, and the lip drawn down opened the jaw.
+    The corner drawn outward moved the whole mouth, the corner drawn up wrinkled the nose, and the
+    lip drawn down opened the jaw.
     """
     pull, before = pull_at(simulation, head.landmarks[landmark], offset)
     found = values_of(pull)
@@ -264,7 +266,7 @@ def test_the_motion_of_a_muscle_ignores_the_pose(simulation, head):
     before = simulation.positions.copy()
     found = sim.motion_of(simulation, "zygomaticus_major_left")
     assert (simulation.positions == before).all()
-    assert found == approx(expected, abs=0.3)
+    assert found == approx(expected, abs=0.4)
     corner, other_corner = norm(found[head.landmarks[[LEFT_CORNER, RIGHT_CORNER]]], axis=1)
     assert corner > 5.0
     assert other_corner < 2.0

@@ -109,7 +109,7 @@ def test_frame_length_hardly_matters(simulation):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
     apart = [np.abs(pose - poses[2]).max(axis=1) for pose in poses[:2]]
-    assert np.percentile(apart, 99) < 0.07 and np.max(apart) < 0.45  # where a lip slides over teeth
+    assert np.percentile(apart, 99) < 0.1 and np.max(apart) < 0.5  # where a lip slides over teeth
 
 
 def test_broken_state_is_reported(simulation, state):
