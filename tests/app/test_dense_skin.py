@@ -8,15 +8,18 @@ from numpy.linalg import norm
 from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
-from risorius import sim
+from risorius import render, sim
 from risorius.app.scenes import FaceScene
 from risorius.app.scenes.dense_skin import DenseSkin
+from risorius.app.viewer.picture.highlights import highlights
+from risorius.app.viewer.picture.skin import MuscleFinder
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit, simplified_head, simplifying
 from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.fitting.painting import sampled
 from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
+from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.sides import sides_of
 from risorius.refine import Embedding
@@ -50,6 +53,25 @@ def test_its_own_triangles_are_drawn(dense):
     assert dense.skin.face_uv.shape == dense.faces.shape
     assert dense.face.head_weight.shape == (len(rest),)
     assert any("simplified" in note for note in dense.head.notes)
+
+
+def test_a_hovered_muscle_shades_a_dense_skin(dense, face):
+    """The shade lies on the simulated mesh, so near the drawn one that its lift shows it.
+
+    A muscle is measured once, and the muscle of another face has no highlight.
+    """
+    dense.reset()
+    corner = dense.rest_positions[dense.head.landmarks[54]]
+    finder = MuscleFinder()
+    muscle = finder.at(dense.simulation, corner)
+    assert finder.at(dense.simulation, corner) is muscle
+    shade = next(each for each in highlights(dense, {}, muscle) if isinstance(each, render.Shade))
+    assert len(shade.opacity) == len(shade.vertices) < len(dense.positions)
+    assert shade.opacity.max() > 0.2
+    lit = shade.vertices[shade.opacity > 0.1]
+    below = closest_points(lit, dense.positions, dense.faces).interpolate(dense.positions)
+    assert norm(below - lit, axis=1).max() < shade.lift
+    assert highlights(face, {}, muscle) == []
 
 
 def test_it_follows_and_comes_back(dense):

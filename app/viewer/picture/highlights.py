@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from risorius import render
 
 from ...scenes import Drawable
@@ -23,19 +21,17 @@ def highlights(
     """
     if pointed or hovered is None:
         return [*pointed_lines(scene, pointed)]
-    fibres = pointed_lines(scene, {hovered.name: 1.0}, clarity=0.35)
-    if len(hovered.shares) != len(scene.positions):  # the head has changed since
-        return [*fibres]
-    return [shade_of(scene, hovered), *fibres]
+    if scene.face is None or scene.face.simulation is not hovered.simulation:
+        return []  # the muscle of the face before
+    return [shade_of(hovered), *pointed_lines(scene, {hovered.name: 1.0}, clarity=0.35)]
 
 
-def shade_of(scene: Drawable, muscle: HoveredMuscle) -> render.Shade:
-    """Return a shade of the skin, whose opacity follows the skin's motion by a muscle."""
+def shade_of(muscle: HoveredMuscle) -> render.Shade:
+    """Return a shade of the simulated skin, whose opacity follows its motion by a muscle."""
     clearest = 0.3  # opacity where the muscle moves the skin most
-    corners = scene.positions[scene.faces]
-    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    lift = 0.25 * float(edges.mean())  # farther than a refined mesh lies from its base mesh
-    return render.Shade(scene.positions, scene.faces, clearest * muscle.shares, LIT_COLOUR, lift)
+    lift = 4.0  # [mm]; a refined or dense mesh lies nearer to the simulated one
+    face = muscle.simulation
+    return render.Shade(face.positions, face.faces, clearest * muscle.shares, LIT_COLOUR, lift)
 
 
 def pointed_lines(

@@ -17,7 +17,7 @@ from risorius.geometry.arrays import Floats64
 
 from ..interface.gui import LEFT_BUTTON, MIDDLE_BUTTON, RIGHT_BUTTON, em
 from ..messages import Messages
-from .skin import HoveredMuscle, Ray, SkinDrag, hovered_muscle, skin_under
+from .skin import HoveredMuscle, MuscleFinder, Ray, SkinDrag, skin_under
 from .stage import SceneView, Stage
 
 Grab = Callable[..., SkinDrag]
@@ -137,6 +137,7 @@ class Mouse(CameraMouse):
         self._messages = messages
         self._grab = grab
         self._select_muscle = select_muscle
+        self._muscles = MuscleFinder()
 
     def forget(self) -> None:
         super().forget()
@@ -162,7 +163,7 @@ class Mouse(CameraMouse):
         point = None if face is None else self._skin_under(io)
         if face is None or point is None:
             return None
-        return hovered_muscle(face.simulation, point, self._view.hovered)
+        return self._muscles.at(face.simulation, point)
 
     def _take(self, io: Any) -> str:
         if self._is_at_divider(io.mouse_pos.x):

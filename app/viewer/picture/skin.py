@@ -76,10 +76,12 @@ def skin_under(ray: Ray, positions: Floats64, faces: npt.NDArray[Any]) -> Floats
 class HoveredMuscle:
     """The muscle under the mouse.
 
-    shares: motion of each vertex by the muscle, relative to the vertex that moves most, (V,).
+    shares: motion of each simulated vertex by the muscle, relative to the vertex that moves most,
+    (V,).
     """
 
     name: str
+    simulation: sim.Simulation
     shares: Floats64
 
     @classmethod
@@ -87,7 +89,7 @@ class HoveredMuscle:
         """Measure the motion that a muscle alone gives to a face at rest."""
         distances = np.linalg.norm(sim.motion_of(simulation, name), axis=1)
         least_motion = 1e-9  # for a muscle that moves nothing
-        return cls(name, distances / max(distances.max(), least_motion))
+        return cls(name, simulation, distances / max(distances.max(), least_motion))
 
 
 def muscle_at(simulation: sim.Simulation, point: Floats64) -> str | None:
@@ -95,14 +97,24 @@ def muscle_at(simulation: sim.Simulation, point: Floats64) -> str | None:
     return simulation.anatomy.muscle_at(point, 14.0)  # [mm] from a fibre at most
 
 
-def hovered_muscle(
-    simulation: sim.Simulation, point: Floats64, last: HoveredMuscle | None
-) -> HoveredMuscle | None:
-    """Return the muscle at a point (3,) of the skin, or None; `last` if it is still the same."""
-    name = muscle_at(simulation, point)
-    if last is not None and last.name == name:
-        return last
-    return None if name is None else HoveredMuscle.of(simulation, name)
+class MuscleFinder:
+    """Finds muscles under the mouse, and measures each muscle of a face once."""
+
+    def __init__(self) -> None:
+        self._simulation: sim.Simulation | None = None
+        self._known: dict[str, HoveredMuscle] = {}  # muscles of this simulation, by name
+
+    def at(self, simulation: sim.Simulation, point: Floats64) -> HoveredMuscle | None:
+        """Return the muscle at a point (3,) of the skin, or None."""
+        if simulation is not self._simulation:
+            self._simulation = simulation
+            self._known = {}
+        name = muscle_at(simulation, point)
+        if name is None:
+            return None
+        if name not in self._known:
+            self._known[name] = HoveredMuscle.of(simulation, name)
+        return self._known[name]
 
 
 class SkinDrag:
