@@ -383,5 +383,5 @@ def motion_of(face: Simulation, name: str) -> Floats64:
     The face itself does not change.
     """
     base = face.clone()
-    _rest(base, dict.fromkeys(base.controls.values, 0.0))
+    base.reset()
     return _slope(base, base.clone(), (name,), 1.0)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from tests.assets.gltf_files import GltfMaker
 from tests.assets.gltf_square import (
     FACES,
     GREEN,
@@ -19,12 +18,6 @@ from tests.assets.gltf_square import (
     show_square,
     uv_of,
 )
-
-
-@pytest.fixture
-def maker() -> GltfMaker:
-    """A glTF maker without content."""
-    return GltfMaker()
 
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])

@@ -7,7 +7,6 @@ import pytest
 
 from risorius import assets
 from risorius.assets import AssetError
-from tests.assets.gltf_files import GltfMaker
 from tests.assets.gltf_square import (
     FACES,
     RED,
@@ -22,12 +21,6 @@ from tests.assets.gltf_square import (
     show_square,
     uv_of,
 )
-
-
-@pytest.fixture
-def maker() -> GltfMaker:
-    """A glTF maker without content."""
-    return GltfMaker()
 
 
 def _extras(maker):

@@ -266,7 +266,7 @@ def test_the_motion_of_a_muscle_ignores_the_pose(simulation, head):
     before = simulation.positions.copy()
     found = sim.motion_of(simulation, "zygomaticus_major_left")
     assert (simulation.positions == before).all()
-    assert found == approx(expected, abs=0.4)
+    assert found == approx(expected, abs=1e-6)
     corner, other_corner = norm(found[head.landmarks[[LEFT_CORNER, RIGHT_CORNER]]], axis=1)
     assert corner > 5.0
     assert other_corner < 2.0
