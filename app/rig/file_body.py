@@ -139,9 +139,10 @@ class FileBody:
         points = self.rest[indices]
         distance = closest_points(points, head.vertices, head.faces).distances
         piece = pieces_of(self.faces, len(self.rest))[indices]
+        order = np.argsort(piece, kind="stable")
+        starts = np.flatnonzero(np.diff(piece[order])) + 1
         roots = np.zeros(len(indices), np.int32)
-        for each in np.unique(piece):
-            members = np.flatnonzero(piece == each)
+        for members in np.split(order, starts):
             near = members[distance[members] < distance[members].min() + ROOT_TOLERANCE]
             roots[members] = near[scipy.spatial.cKDTree(points[near]).query(points[members])[1]]
         local_index = np.full(len(self.rest), -1, np.int32)

@@ -81,6 +81,7 @@ def find_pieces(
     used[faces] = True
     skins = np.unique(piece[skin])
     near = scipy.spatial.cKDTree(head.vertices)
+    mouth = _mouth_of(head)
     groups = [
         group
         for group in np.split(order, starts[1:])
@@ -91,7 +92,7 @@ def find_pieces(
     for number, group in enumerate(groups, start=1):
         points = rest[group]
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        role = _role_of(points, centre, head, near)
+        role = _role_of(points, centre, head, mouth, near)
         found.append(FilePiece(number, group, role, centre, names[group[0]]))
     return _correct_teeth(found, rest)
 
@@ -109,16 +110,53 @@ def without_helpers(pieces: Sequence[FilePiece]) -> list[FilePiece]:
     return found
 
 
+@dataclass(frozen=True)
+class _Mouth:
+    """The box around the built-in teeth and tongue [mm].
+
+    low, high: corners of the box, (3,).
+    between: height of the gap between both rows of teeth.
+    width: width of the teeth and gums.
+    """
+
+    low: Floats64
+    high: Floats64
+    between: float
+    width: float
+
+
+def _mouth_of(head: FittedHead) -> _Mouth | None:
+    """Return the mouth of a head; None if it lacks built-in teeth or a tongue."""
+    parts = {
+        part.name: part.vertices for part in head.parts if part.name.startswith(MOUTH_PART_NAMES)
+    }
+    if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
+        return None
+    around = np.vstack([*parts.values()])
+    # Roots of teeth reach far up and down, a throat reaches far back, and lips lie in front.
+    return _Mouth(
+        low=around.min(axis=0) - np.array([6.0, 12.0, 25.0]),
+        high=around.max(axis=0) + np.array([6.0, 12.0, 2.0]),
+        between=0.5 * (parts["teeth_upper"][:, 1].min() + parts["teeth_lower"][:, 1].max()),
+        width=float(np.ptp(around[:, 0])),
+    )
+
+
 def _role_of(
-    points: Floats64, centre: Floats64, head: FittedHead, near: scipy.spatial.cKDTree
+    points: Floats64,
+    centre: Floats64,
+    head: FittedHead,
+    mouth: _Mouth | None,
+    near: scipy.spatial.cKDTree,
 ) -> str:
     """Return the role of a piece; points: vertices of the piece [mm], (n, 3)."""
     for eye in head.eyes:
         if is_eyeball(points, eye.centre, eye.radius):
             return f"eye_{eye.name}"
-    role = _role_in_mouth(points, centre, head)
-    if role is not None:
-        return role
+    if mouth is not None:
+        role = _role_in_mouth(points, centre, mouth)
+        if role is not None:
+            return role
     landmarks = head.vertices[head.landmarks]
     distance = near.query(points)[0]
     if distance.min() < 4.0 and (
@@ -163,33 +201,23 @@ def _is_beard(points: Floats64, centre: Floats64, landmarks: Floats64) -> bool:
     return bool(is_low and is_ahead and is_central)
 
 
-def _role_in_mouth(points: Floats64, centre: Floats64, head: FittedHead) -> str | None:
+def _role_in_mouth(points: Floats64, centre: Floats64, mouth: _Mouth) -> str | None:
     """Return the role of a piece near the built-in teeth or tongue; None for other pieces."""
-    parts = {
-        part.name: part.vertices for part in head.parts if part.name.startswith(MOUTH_PART_NAMES)
-    }
-    if not {"teeth_upper", "teeth_lower", "tongue"} <= set(parts):
-        return None
-    around = np.vstack([*parts.values()])
-    # Roots of teeth reach far up and down, a throat reaches far back, and lips lie in front.
-    low = around.min(axis=0) - np.array([6.0, 12.0, 25.0])
-    high = around.max(axis=0) + np.array([6.0, 12.0, 2.0])
-    is_in = ((points > low) & (points < high)).all(axis=1)
+    is_in = ((points > mouth.low) & (points < mouth.high)).all(axis=1)
     if is_in.mean() < 0.8:
         return None
-    between = 0.5 * (parts["teeth_upper"][:, 1].min() + parts["teeth_lower"][:, 1].max())
     width, height, depth = np.ptp(points, axis=0)
     # A row of teeth is hollow in its middle; a tongue and a palate are not.
     is_middle = np.abs(points[:, 0] - centre[0]) < 0.15 * width
     is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
     # Walls of a mouth enclose the gums. A tongue may be as high if it reaches into the throat.
-    if width > 0.85 * np.ptp(around[:, 0]) and height > 35.0:
+    if width > 0.85 * mouth.width and height > 35.0:
         return "mouth"
     if width > 20.0 and depth > 25.0 and is_filled:
         # A palate lies above the edges of the teeth, and the floor of a mouth below them.
-        if centre[1] < between < points[:, 1].max() + 5.0:
+        if centre[1] < mouth.between < points[:, 1].max() + 5.0:
             return "tongue"
-    return "upper_teeth" if centre[1] > between else "lower_teeth"
+    return "upper_teeth" if centre[1] > mouth.between else "lower_teeth"
 
 
 def _correct_teeth(pieces: list[FilePiece], rest: Floats64) -> list[FilePiece]:

@@ -25,15 +25,17 @@ def is_eyeball(points: Floats64, centre: Floats64, radius: float) -> bool:
     low = points.min(axis=0)
     high = points.max(axis=0)
     width, height, depth = high - low
-    off = np.linalg.norm(points - centre, axis=1)
-    if np.quantile(off, 0.9) > 1.7 * radius:
-        # Some makers' eyeballs are half as large again as those of people, and lie farther back.
-        is_ball = sphere_of(points, centre, radius)[0] is not centre
-        if not is_ball or depth < 0.5 * width:
-            return False
     aside = np.abs(0.5 * (low + high) - centre)[:2].max()
     is_round = 0.6 < (width + 1e-9) / (height + 1e-9) < 1.7
-    return bool(aside < 0.4 * radius and is_round and width > 0.3 * radius)
+    # Most pieces of a file with thousands of strands of hair end here, before the costly tests.
+    if aside >= 0.4 * radius or not is_round or width <= 0.3 * radius:
+        return False
+    off = np.linalg.norm(points - centre, axis=1)
+    if np.quantile(off, 0.9) <= 1.7 * radius:
+        return True
+    # Some makers' eyeballs are half as large again as those of people, and lie farther back.
+    is_ball = sphere_of(points, centre, radius)[0] is not centre
+    return bool(is_ball and depth >= 0.5 * width)
 
 
 def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats64, float]:

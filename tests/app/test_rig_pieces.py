@@ -16,6 +16,7 @@ from risorius.app.rig.pieces import (
     without_helpers,
 )
 from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import eyeballs
 from risorius.geometry.normals import vertex_normals
 
 Points = npt.NDArray[np.float64]
@@ -170,6 +171,20 @@ def test_single_teeth_belong_to_their_row(face):
     faces = np.vstack([box + 8 * number for number in range(len(teeth))])
     pieces = pieces_with(face, (np.vstack(teeth), faces))
     assert [piece.role for piece in pieces] == roles
+
+
+def test_thousands_of_strands_need_no_costly_tests(face, monkeypatch):
+    """No ball is fitted to strands of hair; a fit for each took seconds for a whole head."""
+    monkeypatch.setattr(eyeballs, "sphere_of", lambda *_: pytest.fail("a ball was fitted"))
+    strand = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 30.0, 0.0], [1.0, 30.0, 0.0]])
+    count = 3000
+    across = np.linspace(-80.0, 80.0, count)
+    crown = face.rest_positions[:, 1].max() + 20.0
+    roots = np.column_stack([across, np.full(count, crown), np.zeros(count)])
+    points = (roots[:, None] + strand).reshape(-1, 3)
+    faces = np.array([[0, 1, 2], [1, 3, 2]]) + 4 * np.arange(count)[:, None, None]
+    pieces = pieces_with(face, (points, faces.reshape(-1, 3)))
+    assert [piece.role for piece in pieces] == ["hair"] * count
 
 
 def test_lines_have_the_names_of_the_file(face):
