@@ -12,6 +12,7 @@ irradiance environment maps". The choice of a key light is ours.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -19,6 +20,8 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from .style import Light, MapBackground
+
+TRIED_STRIDE = 7  # texels from one tried key light to the next: time grows with their square
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +40,11 @@ class LightMap:
 
     def exposed(self, turn: float = 0.0) -> tuple[Light, float]:
         """Return the exposed light (see `light`), and the exposure: the factor on the radiance."""
-        rows, columns = self.radiance.shape[:2]
-        every = max(rows // 32, 1)  # a resolution of 6 degrees suffices for light
-        radiance = self.radiance[: rows // every * every, : columns // every * every]
-        blocks = radiance.reshape(rows // every, every, columns // every, every, 3)
-        radiance = blocks.mean(axis=(1, 3))
-        away = directions(radiance.shape[0], radiance.shape[1], turn).reshape(-1, 3)
-        solid = np.repeat(_solid_angles(radiance.shape[0], radiance.shape[1]), radiance.shape[1])
-        radiance = radiance.reshape(-1, 3)
-        to_key, excess = _key_of(radiance, away, solid)
+        rows, columns = self._coarse.shape[:2]
+        radiance = self._coarse.reshape(-1, 3)
+        away = directions(rows, columns, turn).reshape(-1, 3)
+        solid = _solid_angles_of_texels(rows, columns)
+        to_key, excess = _key_of(radiance, away, solid, self._gathered)
         key = solid @ excess / np.pi
         factors = [0.25, *[0.5] * 3, *[15 / 16] * 3, 5 / 64, 15 / 64]
         moments = (_harmonics(away) * solid[:, None]).T @ (radiance - excess) / np.pi
@@ -74,14 +73,40 @@ class LightMap:
         """
         if exposure is None:
             exposure = self.exposed(turn)[1]
+        return MapBackground(exposure * self._softened, turn)
+
+    @cached_property
+    def _coarse(self) -> Floats64:
+        """The map at a resolution of 6 degrees, (h, w, 3), which suffices for light."""
+        rows, columns = self.radiance.shape[:2]
+        every = max(rows // 32, 1)
+        radiance = self.radiance[: rows // every * every, : columns // every * every]
+        blocks = radiance.reshape(rows // every, every, columns // every, every, 3)
+        return np.asarray(blocks.mean(axis=(1, 3)))
+
+    @cached_property
+    def _gathered(self) -> Floats64:
+        """The light from around each tried texel, (k,); a turn does not change it."""
+        rows, columns = self._coarse.shape[:2]
+        radiance = self._coarse.reshape(-1, 3)
+        away = directions(rows, columns).reshape(-1, 3)
+        lightness = _luminance(radiance) * _solid_angles_of_texels(rows, columns)
+        square = np.maximum(away[::TRIED_STRIDE] @ away.T, 0.0) ** 2
+        eighth = (square**2) ** 2
+        # The 40th power of the cosine is a lobe of about 15 degrees. Repeated squaring is faster
+        # than a power.
+        return np.asarray((eighth**2) ** 2 * eighth @ lightness)
+
+    @cached_property
+    def _softened(self) -> Floats64:
+        """The map out of focus, (H, W, 3)."""
         rows, columns = self.radiance.shape[:2]
         out_of_focus = 3.0 * rows / 180.0  # 3 degrees in [texels]
         up = np.subtract.outer(np.arange(rows), np.arange(rows))
         around = np.subtract.outer(np.arange(columns), np.arange(columns))
         around = (around + columns // 2) % columns - columns // 2  # rows are periodic
         softened = np.tensordot(_gaussian(up, out_of_focus), self.radiance, 1)
-        softened = _gaussian(around, out_of_focus) @ softened
-        return MapBackground(exposure * softened, turn)
+        return np.asarray(_gaussian(around, out_of_focus) @ softened)
 
 
 def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
@@ -99,21 +124,22 @@ def _solid_angles(rows: int, columns: int) -> Floats64:
     return np.asarray(-np.diff(edges) * 2.0 * np.pi / columns)
 
 
-def _key_of(radiance: Floats64, away: Floats64, solid: Floats64) -> tuple[Floats64, Floats64]:
+def _solid_angles_of_texels(rows: int, columns: int) -> Floats64:
+    """Return the solid angle of each texel [sr], (rows * columns,)."""
+    return np.repeat(_solid_angles(rows, columns), columns)
+
+
+def _key_of(
+    radiance: Floats64, away: Floats64, solid: Floats64, gathered: Floats64
+) -> tuple[Floats64, Floats64]:
     """Choose the key light: its direction (3,), and its part of each texel's light (n, 3).
 
     Light from the front is preferred: a sun behind the head is left to the smooth light.
 
     radiance: light of the texels, (n, 3). away: directions of the texels, (n, 3). solid: solid
-    angles of the texels [sr], (n,).
+    angles of the texels [sr], (n,). gathered: see `LightMap._gathered`.
     """
-    lightness = _luminance(radiance) * solid
-    tried = away[::7]  # every seventh texel, because the time grows with the square of the number
-    square = np.maximum(tried @ away.T, 0.0) ** 2
-    eighth = (square**2) ** 2
-    # The 40th power of the cosine is a lobe of about 15 degrees. Repeated squaring is faster than
-    # a power.
-    gathered = (eighth**2) ** 2 * eighth @ lightness
+    tried = away[::TRIED_STRIDE]
     brightest = tried[np.argmax(gathered * (0.6 + 0.4 * tried[:, 2]))]
     cosine = away @ brightest
     is_near = cosine > np.cos(np.radians(32.0))
