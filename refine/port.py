@@ -6,7 +6,7 @@ refiner needs none of it. `refine_gl` uses only `risorius.refine` and this modul
 """
 
 from .beyond.blending import FAN_TABLE, RAMP_WIDTH
-from .beyond.cubic import STEEPENING_SHARE, weigh_corners
+from .beyond.cubic import STEEPENING_SHARE
 from .beyond.displacement import GROWTH_SHARE
 from .beyond.measuring import mean_length
 from .beyond.options import criterion_of
@@ -16,6 +16,7 @@ from .kahler.criterion import find_undefined_normals
 from .kahler.refiner import points_on_edges
 from .kahler.table import CENTRE_POINT, CONFIGURATION_TABLE
 from .mesh.borders import border_neighbours, follow_borders
+from .mesh.normals import weigh_corners
 from .mesh.rings import vertex_rings
 
 __all__ = [

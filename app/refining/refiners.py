@@ -13,6 +13,8 @@ import numpy.typing as npt
 from risorius import assets, refine
 from risorius.assets.identities import Person
 from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.normals import cross_products
+from risorius.geometry.sides import edges_of
 
 from ..errors import UserError
 from ..scenes import Drawable
@@ -52,9 +54,9 @@ def refiner_for(
             if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
             options["scheme"] = refine.DetailScheme(finer)
-        # A refiner by name has no outlines, because the graphics card cannot draw them.
+        # A refiner by name has neither, because the graphics card cannot draw them.
         if refinement.refiner is None and options.get("scheme") == CUBIC_SCHEME:
-            options["scheme"] = refine.CubicScheme(_outlines(scene))
+            options["scheme"] = refine.CubicScheme(_outlines(scene), _backs_of_lids(scene))
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
@@ -167,6 +169,33 @@ def _outlines(scene: Drawable) -> list[list[int]]:
         return []
     rims = [assets.load("head").rings[f"nostril_{side}"].tolist() for side in ("left", "right")]
     return [[*rim, rim[0]] for rim in rims]
+
+
+def _backs_of_lids(scene: Drawable) -> list[int]:
+    """Return the triangles on the inner sides of coarse eyelids, which face the eyeball.
+
+    A margin of few large triangles would be shaded as a mean of both sides: it would have dark
+    spots. Small triangles are the dark line between shut lids.
+    """
+    if scene.face is None:
+        return []
+    x = scene.rest_positions
+    faces = scene.faces
+    crosses = cross_products(x, faces)
+    links = edges_of(faces)
+    backs: list[int] = []
+    for eye in scene.face.head.eyes:
+        reach = eye.radius + 8.0  # [mm] from the eyeball's centre, with the thickness of a lid
+        is_near = (np.linalg.norm(x - eye.centre, axis=1) < reach)[faces].all(axis=1)
+        turned = (crosses * (x[faces].mean(axis=1) - eye.centre)).sum(axis=1) < 0.0
+        found = np.flatnonzero(is_near & turned)
+        margin = np.intersect1d(faces[found], faces[is_near & ~turned])
+        at_margin = links[np.isin(links, margin).any(axis=1)]
+        lengths = np.linalg.norm(np.diff(x[at_margin], axis=1)[:, 0], axis=1)
+        coarse_edge = 4.2  # [mm], mean of the edges at a margin; that of the built-in head is 3.8
+        if len(lengths) and lengths.mean() > coarse_edge:
+            backs += found.tolist()
+    return backs
 
 
 def can_detail(scene: Drawable) -> bool:

@@ -41,8 +41,8 @@ from ..kahler.scheme import Scheme
 from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of, sharpened
-from ..mesh.fans import Fans, fans_around, fans_of
-from ..mesh.normals import cross_product, normalise
+from ..mesh.fans import Fans, corners_behind, fans_around, fans_of
+from ..mesh.normals import cross_product, normalise, weigh_corners
 from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
@@ -52,11 +52,8 @@ from ..mesh.vectors import (
     SMALLEST_FLOAT,
     THREE_QUARTERS,
     ZERO,
-    Rows,
     Vector,
     between,
-    cross,
-    difference,
     dot,
     less,
     mix,
@@ -87,8 +84,6 @@ MIDDLE_WEIGHT = np.float32(1 / 8)
 NEAR_WEIGHT = np.float32(9 / 64)
 FAR_WEIGHT = np.float32(3 / 64)
 """Weights of the nearer and of the farther tangent at a quarter of a cubic."""
-SLIVER_SINE = 1e-9
-"""Sine of an angle below which a triangle counts as degenerate and has no normal."""
 
 
 class Tangents(NamedTuple):
@@ -113,16 +108,26 @@ class CubicScheme(Scheme):
     uses_normals = False
     measures = True
 
-    def __init__(self, outlines: Sequence[Sequence[int]] = ()) -> None:
-        """`outlines`: vertices along rims within the surface, whose edges bend like borders.
+    def __init__(self, outlines: Sequence[Sequence[int]] = (), backs: Sequence[int] = ()) -> None:
+        """Choose rims, and folds.
 
-        The first and the last edge of a rim only give their direction to their neighbours.
+        - `outlines`: vertices along rims within the surface, whose edges bend like borders. The
+          first and the last edge of a rim only give their direction to their neighbours.
+        - `backs`: triangles behind folds, as inner sides of lids. A vertex that they share with
+          other triangles has the normal of the others: a mean of both sides is normal to neither.
         """
         self._outlines = [[int(vertex) for vertex in outline] for outline in outlines]
+        self._backs = [int(triangle) for triangle in backs]
 
     def outlined(self, connectivity: Connectivity) -> Flags:
         """Edges of the outlines, shape (E,)."""
         return edges_of_outlines(connectivity, self._outlines)
+
+    def is_back(self, connectivity: Connectivity) -> Flags:
+        """Flags of triangles behind folds, shape (F,)."""
+        found = np.zeros(len(connectivity.faces), np.bool_)
+        found[self._backs] = True
+        return found
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
@@ -139,6 +144,7 @@ class CubicScheme(Scheme):
         valences = np.bincount(sectors.edges.ravel(), minlength=sectors.sector_count)
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, mesh.faces, self._weights)
+        self._weights[corners_behind(mesh.faces, self.is_back(mesh))] = ZERO
         self._tangents = Tangents(
             normals=sector_normals,
             steeper=np.zeros_like(sector_normals),
@@ -194,23 +200,6 @@ class CubicScheme(Scheme):
         parallel_for(
             displace_cubic, len(self._mesh.edges), self._around, positions, tangents, self._rows
         )
-
-
-@njit
-def weigh_corners(positions: Floats64, faces: Unsigned32, weights: Rows) -> None:
-    """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
-    for t in range(faces.shape[0]):
-        for i in range(3):
-            a = faces[t, i]
-            b = faces[t, (i + 1) % 3]
-            c = faces[t, (i + 2) % 3]
-            u = difference(positions, a, b)
-            v = difference(positions, a, c)
-            normal = cross(u, v)
-            size = np.sqrt(dot(u, u) * dot(v, v))
-            area = np.sqrt(dot(normal, normal))
-            angle = np.arctan2(area, dot(u, v))
-            weights[t, i] = np.sqrt(angle / area) if area > SLIVER_SINE * size else 0.0
 
 
 @njit

@@ -74,7 +74,7 @@ class RefinedNormals(Scheme):
         if outlined.any():
             connectivity = sharpened(connectivity, outlined)
         self._mesh = connectivity
-        self._surface = WholeSurface(connectivity, rest_positions)
+        self._surface = WholeSurface(connectivity, rest_positions, self.is_back(connectivity))
         on_crease = np.zeros(connectivity.vertex_count, dtype=np.bool_)
         on_crease[connectivity.edges[connectivity.is_sharp]] = True
         self._at_creases = np.flatnonzero(on_crease[connectivity.edges].any(axis=1))
@@ -101,6 +101,10 @@ class RefinedNormals(Scheme):
     def outlined(self, connectivity: Connectivity) -> Flags:
         """Flags of interior edges that the scheme treats as outlines, shape (E,)."""
         return self._scheme.outlined(connectivity)
+
+    def is_back(self, connectivity: Connectivity) -> Flags:
+        """Flags of triangles that the scheme leaves out of normals of other triangles, (F,)."""
+        return self._scheme.is_back(connectivity)
 
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split moves the midpoint of every edge, and turns its normal, (E,) each.

@@ -11,7 +11,7 @@ from ...jit import njit
 from ..kahler.frame import FrameBuffers, buffers_for, split_everywhere
 from ..kahler.look_up import SIDE_BITS
 from ..mesh.connectivity import Connectivity
-from ..mesh.fans import fans_of
+from ..mesh.fans import fans_before
 from ..mesh.normals import normalise
 from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
@@ -47,18 +47,22 @@ points.
 
 OfEdges = tuple[Unsigned32, Unsigned32, Flags, Floats32, Floats32, Floats32]
 """The arrays that kernels over all edges read: `around.points`, `edge_sides`, `around.is_interior`
-(mesh/), rows of vertices and edge points, shape (V + E, 6), centres of triangles, (F, 3), normals,
-(V + E, 3). It is a plain tuple, because numba takes it faster than a named tuple.
+(mesh/) without edges at backs, rows of vertices and edge points, shape (V + E, 6), centres of
+triangles, (F, 3), normals, (V + E, 3). It is a plain tuple, because numba takes it faster than a
+named tuple.
 """
 
 
 class WholeSurface:
     """The surface of a frame with every edge split once, and its normals."""
 
-    def __init__(self, mesh: Connectivity, rest_positions: Floats64) -> None:
-        """Allocate the arrays; `rest_positions`: shape (V, 3)."""
+    def __init__(self, mesh: Connectivity, rest_positions: Floats64, is_back: Flags) -> None:
+        """Allocate the arrays; `rest_positions`: shape (V, 3).
+
+        is_back: flags of triangles that do not count in normals of other triangles, shape (F,).
+        """
         self._mesh = mesh
-        self._fans = fans_of(mesh)
+        self._fans = fans_before(mesh, is_back)
         self._origin = mesh.first_vertex
         vertex_count = mesh.vertex_count
         edge_count = len(mesh.edges)
@@ -79,7 +83,10 @@ class WholeSurface:
         """Unit normals of these rows, shape (V + E, 3); of edges only after
         `find_normals_of_edges`.
         """
-        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
+        is_smooth = mesh.around.is_interior.copy()
+        first, second = is_back[mesh.edge_sides[is_smooth] >> SIDE_BITS].T
+        is_smooth[is_smooth] = first == second
+        around = mesh.around.points, mesh.edge_sides, is_smooth
         self._of_edges: OfEdges = (*around, rows, self._centres, self.normals)
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:

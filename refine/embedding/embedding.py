@@ -16,9 +16,9 @@ from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ...geometry.read_only import read_only
 from ...jit import njit
-from ..beyond.cubic import SLIVER_SINE
 from ..mesh.connectivity import connect_writable
 from ..mesh.creases import with_creases
+from ..mesh.normals import SLIVER_SINE
 from ..mesh.threads import parallel_for
 from ..mesh.validation import (
     LARGEST_COORDINATE,

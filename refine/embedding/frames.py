@@ -16,9 +16,9 @@ from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
 from ...jit import njit
-from ..beyond.cubic import SLIVER_SINE, weigh_corners
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import corner_sectors
+from ..mesh.normals import SLIVER_SINE, weigh_corners
 from ..mesh.vectors import Vector, cross, difference, dot, less, plus, times, write_row
 
 FRAME_NUMBERS = 5

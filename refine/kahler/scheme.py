@@ -58,6 +58,10 @@ class Scheme:
         """Flags of interior edges that are outlines like borders, shape (E,); by default none."""
         return np.zeros(len(connectivity.edges), np.bool_)
 
+    def is_back(self, connectivity: Connectivity) -> Flags:
+        """Flags of triangles that do not count in normals of other triangles, (F,); none here."""
+        return np.zeros(len(connectivity.faces), np.bool_)
+
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move each edge's midpoint and turn its normal, (E,) each.
 

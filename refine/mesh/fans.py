@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...geometry.arrays import Unsigned32
+from ...geometry.arrays import Flags, Unsigned32
 from .connectivity import Connectivity
 
 
@@ -41,6 +41,24 @@ def fans_around(
     neighbour_starts, order = _by_vertex(edges, vertex_count)
     neighbours = edges[:, ::-1].ravel()[order].astype(np.uint32)
     return Fans(corner_starts, corners, neighbour_starts, neighbours)
+
+
+def fans_before(mesh: Connectivity, is_back: Flags) -> Fans:
+    """Return the fans of a mesh without the corners of backs at vertices of other triangles.
+
+    is_back: flags of triangles, shape (F,).
+    """
+    fans = fans_of(mesh)
+    kept = ~corners_behind(mesh.faces, is_back)[fans.corners // 4, fans.corners % 4]
+    ends = np.concatenate([[0], np.cumsum(kept)])
+    starts = ends[fans.corner_starts].astype(np.uint32)
+    return fans._replace(corner_starts=starts, corners=fans.corners[kept])
+
+
+def corners_behind(faces: npt.NDArray[np.integer], is_back: Flags) -> Flags:
+    """Return the corners of backs, (F,), at vertices of other triangles, as flags (F, 3)."""
+    at_front = np.isin(faces, faces[~is_back])
+    return is_back[:, None] & at_front
 
 
 def _by_vertex(

@@ -16,10 +16,12 @@ from .vectors import (
     ONE,
     ROW_WIDTH,
     ZERO,
+    Rows,
     Vector,
     add_to_row,
     between,
     cross,
+    difference,
     dot,
     is_representable,
     row_of,
@@ -27,6 +29,9 @@ from .vectors import (
     unit,
     write_row,
 )
+
+SLIVER_SINE = 1e-9
+"""Sine of an angle below which a triangle counts as degenerate and has no normal."""
 
 
 @njit
@@ -75,3 +80,20 @@ def vertex_normals(positions: Floats64, faces: Unsigned32, normals: Floats32) ->
         add_to_row(normals, b, normal)
         add_to_row(normals, c, normal)
     normalise(normals)
+
+
+@njit
+def weigh_corners(positions: Floats64, faces: Unsigned32, weights: Rows) -> None:
+    """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
+    for t in range(faces.shape[0]):
+        for i in range(3):
+            a = faces[t, i]
+            b = faces[t, (i + 1) % 3]
+            c = faces[t, (i + 2) % 3]
+            u = difference(positions, a, b)
+            v = difference(positions, a, c)
+            normal = cross(u, v)
+            size = np.sqrt(dot(u, u) * dot(v, v))
+            area = np.sqrt(dot(normal, normal))
+            angle = np.arctan2(area, dot(u, v))
+            weights[t, i] = np.sqrt(angle / area) if area > SLIVER_SINE * size else 0.0

@@ -1,16 +1,24 @@
-"""Outlines within a surface: rims that the scheme `cubic` rounds."""
+"""Rims within a surface, which the scheme `cubic` rounds, and folds at which normals end."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from risorius import refine
 from risorius.app.refining.presets import Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
 from risorius.assets.loading import load
+from risorius.assets.meshes import Mesh
+from risorius.bench.subjects import decimated
+from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import cross_products
+
+from ...heads import UserHead
 
 POINT_COUNT = 9
 
@@ -59,6 +67,42 @@ def test_a_rim_is_nearly_a_circle():
     curves, chords = radii_between(refiner, vertices, [*range(POINT_COUNT)])
     assert np.abs(curves - 1.0).max() < 0.01
     assert chords.max() < 0.95
+
+
+def test_backs_do_not_turn_the_normals_of_a_rim():
+    """A rim before a deep pit is as flat as the plane around it, if the pit's wall is a back."""
+    vertices, faces = pit()
+    vertices[2 * POINT_COUNT :, 2] *= 10.0
+    walls = range(2 * POINT_COUNT, 4 * POINT_COUNT)
+    for backs, is_flat in ((walls, True), ((), False)):
+        scheme = refine.CubicScheme(backs=backs)
+        refiner = refine.create("kahler", faces, vertices, scheme=scheme, criterion="displacement")
+        of_rim = refiner.refine(vertices).normals[:POINT_COUNT]
+        assert (of_rim[:, 2] > 0.999).all() == is_flat
+        assert (of_rim[:, 2] < 0.5).all() != is_flat
+
+
+def test_shut_lids_of_few_triangles_have_no_dark_spots(head, tmp_path):
+    """No normal of a shut lid of 1 300 triangles points backward, as many did by inner sides.
+
+    Compared are the corners of drawn triangles that face the viewer, with the triangle's normal.
+    """
+    points, faces = decimated(head.vertices, head.faces, 1300)
+    numbers = cKDTree(points).query(head.vertices[head.landmarks])[1]
+    scene = FaceScene(fit_head(*UserHead(Mesh(points, faces), numbers).write(tmp_path)))
+    refiner = refiner_for(scene, Refinement())
+    scene.pose({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
+    scene.step(1.0)
+    mesh = refiner.refine(scene.positions)
+    turned = unit_vectors(cross_products(mesh.positions.astype(np.float64), mesh.triangles))
+    middles = mesh.positions[mesh.triangles].mean(axis=1)
+    lids = turned[:, 2] > 0.2
+    lids &= np.any(
+        [np.linalg.norm(middles - eye.centre, axis=1) < 19.0 for eye in scene.head.eyes], axis=0
+    )
+    cosines = np.einsum("tck,tk->tc", mesh.normals[mesh.triangles[lids]], turned[lids])
+    assert cosines.size > 150
+    assert cosines.min() > -0.2  # -0.8 by both sides
 
 
 @pytest.mark.parametrize("person", [None, 19])
