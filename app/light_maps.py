@@ -63,7 +63,7 @@ def is_light(name: str) -> bool:
 
 @lru_cache(maxsize=32)  # each map takes 0.8 MB
 def _light_of(name: str, reading: int) -> SceneLight:
-    """Make a light; `reading`: how often its file was read before, so that it is read again."""
+    """Make a light. `reading` counts how often its file was read, so the cache keeps no old map."""
     if name in render.LAMPS:
         return SceneLight(render.LAMPS[name], None)
     light_map = render.LIGHT_MAPS.get(name) or read_light_map(Path(name))

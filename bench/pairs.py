@@ -30,7 +30,7 @@ from .report import processor, table
 Progress = Callable[[str], object]
 
 
-class Pair(NamedTuple):
+class TimedPair(NamedTuple):
     """The times of two ways to refine the frames of a mesh."""
 
     mesh: str
@@ -47,7 +47,7 @@ class Pair(NamedTuple):
 
 def timed_pair(
     load: Load, method: str, calls: Sequence[Callable[[Points], object]], seconds: float
-) -> Pair:
+) -> TimedPair:
     """Time two calls in turn for about `seconds`, at least five pairs.
 
     Other work on the machine slows both calls of a pair.
@@ -63,7 +63,7 @@ def timed_pair(
     times = interleaved(both, max(round(seconds / spent), fewest_pairs))
     first, second = (1e3 * np.median(times, axis=0) / len(load.frames)).tolist()
     gain = float(np.median(times[:, 0] / times[:, 1]))
-    return Pair(
+    return TimedPair(
         mesh=load.name,
         method=method,
         triangles=len(load.faces),
@@ -75,7 +75,7 @@ def timed_pair(
 
 def by_threads(
     sizes: Sequence[str], seconds: float, progress: Progress = lambda _: None
-) -> list[Pair]:
+) -> list[TimedPair]:
     """Time each rule on meshes of these sizes by one thread and by all, for about `seconds` each.
 
     Raises UserError if there is only one thread.
@@ -108,7 +108,7 @@ def _refine(refiner: refine.Refiner, thread_count: int, positions: Points) -> No
 
 def by_matrix(
     sizes: Sequence[str], seconds: float, progress: Progress = lambda _: None
-) -> list[Pair]:
+) -> list[TimedPair]:
     """Time each rival and our refiner on meshes of these sizes, for about `seconds` each.
 
     Raises UserError without libigl.
@@ -126,13 +126,13 @@ def by_matrix(
     return rows
 
 
-def report_of_threads(rows: Sequence[Pair]) -> str:
+def report_of_threads(rows: Sequence[TimedPair]) -> str:
     """The text to print about threads."""
     title = f"A frame by one thread and by {threads.THREAD_COUNT}, in pairs, on {processor()}:"
     return _text([title], "rule:<15|triangles:10d|1 thread ms:12.2f|all ms:9.2f", rows)
 
 
-def report_of_matrix(rows: Sequence[Pair]) -> str:
+def report_of_matrix(rows: Sequence[TimedPair]) -> str:
     """The text to print about matrices."""
     versions = ", ".join(f"{name} {version(name)}" for name in ("libigl", "scipy", "numba"))
     titles = [
@@ -142,7 +142,7 @@ def report_of_matrix(rows: Sequence[Pair]) -> str:
     return _text(titles, "rival:<20|triangles:10d|theirs ms:11.3f|ours ms:10.3f", rows)
 
 
-def _text(titles: Sequence[str], columns: str, rows: Sequence[Pair]) -> str:
+def _text(titles: Sequence[str], columns: str, rows: Sequence[TimedPair]) -> str:
     """A report; columns: those between the mesh and the gain."""
     note = "medians; gain is that of the quotients of pairs."
     return "\n".join([*titles, note, "", *table(f"mesh:<6|{columns}|gain:7.2f", rows)])

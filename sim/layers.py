@@ -27,14 +27,14 @@ counts as its own value / the other control's value, at most 1:
 
     [mouthClose]
     action = "lips shut over the open jaw"
-    share_of = "jawOpen"            # mouthClose 0.3 shuts the lips where jawOpen is 0.3, and
-    lips_closed = 1.0               # where that is 0.6 half; without jawOpen it does nothing
+    share_of = "jawOpen"            # mouthClose 0.3 shuts the lips fully at jawOpen 0.3, and by
+    lips_closed = 1.0               # half at jawOpen 0.6; without jawOpen it has no effect
 
 `at_least` holds weights that do not add to others; they are minimum values, called floors.
 
     [AU22]
     action = "lip funneler"
-    at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
+    at_least = { jaw_open = 0.22 }  # lips need room for a funnel; an open jaw has it already
 
 How layers combine: everything adds up, in any order of setting. A muscle's value is its own value,
 plus each control above it times its weight. It is raised to the greatest floor, and cut off at the
@@ -68,7 +68,7 @@ PAIR_ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(
 GREATEST_WEIGHT = 2.0  # a larger weight is taken for a typing error
 Weight = Annotated[float, Within(-GREATEST_WEIGHT, GREATEST_WEIGHT)]
 Floor = Annotated[float, Within(0.0, GREATEST_WEIGHT)]
-Pair = Annotated[bool | str, OneOf((False, *PAIR_ENDINGS), 'true, false or "Left Right"')]
+SidesOfPair = Annotated[bool | str, OneOf((False, *PAIR_ENDINGS), 'true, false or "Left Right"')]
 LEAST_WHOLE = 0.08  # value of the control in `share_of` below which the weight fades
 
 
@@ -135,7 +135,7 @@ class _Row(Record):
 
     entries: Rest[Weight]
     action: str = ""
-    pair: Pair = False
+    pair: SidesOfPair = False
     mirror: str | None = None
     share_of: str | None = None
     at_least: Mapping[str, Floor] = field(default_factory=dict)

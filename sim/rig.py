@@ -47,7 +47,7 @@ LID_ACTIONS = ("upper_close", "lower_raise", "upper_raise")  # actions of lid mu
 
 MOUTH_POINT = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
 
-Pair = tuple[float, float]
+TwoNumbers = tuple[float, float]
 Triple = tuple[float, float, float]
 
 
@@ -88,7 +88,7 @@ class _PointTable(Record):
         return LandmarkPoint(mix, self.offset)
 
 
-Point = Annotated[LandmarkPoint, MadeFrom(_PointTable, _PointTable.point)]
+RigPoint = Annotated[LandmarkPoint, MadeFrom(_PointTable, _PointTable.point)]
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class Eyes(Record):
 
     gaze_deg: Annotated[float, Within(0.0, 60.0)] = 30.0  # eye rotation at gaze = 1
     # share of the vertical gaze angle: up, down
-    upper_lid_follows: Annotated[Pair, Within(0.0, 1.0)] = (0.55, 0.8)
+    upper_lid_follows: Annotated[TwoNumbers, Within(0.0, 1.0)] = (0.55, 0.8)
     lower_lid_follows: Annotated[float, Within(0.0, 1.0)] = 0.3
     lid_reach: Annotated[float, Within(2.0, 30.0)] = 8.0  # mm from the margin to where the lid ends
     lid_plateau: Annotated[float, Within(0.0, 20.0)] = 2.0  # mm from the margin that move as one
@@ -143,7 +143,7 @@ class Eyes(Record):
     lid_stiffness: Annotated[float, Within(0.0, 1000.0)] = 120.0
     # share of the way that the lower lid comes up
     blink_meeting: Annotated[float, Within(0.0, 0.5)] = 0.12
-    blink_slide: Annotated[Pair, Within(-5.0, 5.0)] = (0.0, 0.0)  # mm to the nose
+    blink_slide: Annotated[TwoNumbers, Within(-5.0, 5.0)] = (0.0, 0.0)  # mm to the nose
     raise_slide: Annotated[float, Within(-10.0, 10.0)] = 0.0  # the same, for each rad of raising
     lids_follow_sideways: Annotated[float, Within(0.0, 1.0)] = 0.0  # share of the horizontal gaze
     # mm from the upper margin: nearer skin moves fully with the lid
@@ -169,8 +169,8 @@ class HeadJoint(Record):
 class Fibre(Record):
     """One fibre from its origin (on bone, fixed) to its insertion (in the skin, moving)."""
 
-    origin: Point
-    insertion: Point
+    origin: RigPoint
+    insertion: RigPoint
     weight: Annotated[float, Within(0.0, 3.0)] = 1.0  # how firmly skin around it is attached
     gain: Annotated[float, Within(0.0, 6.0)] = 1.0  # of its pull relative to the other fibres
     width_factor: Annotated[float, Within(0.1, 4.0)] = 1.0  # x the muscle's width
@@ -219,17 +219,17 @@ class LinearMuscle(Muscle):
 class RingMuscle(Muscle):
     """A sphincter or a part of one: skin on an elliptic ring moves to a centre, and outward."""
 
-    centre: Point = MOUTH_POINT
-    shape: Point | None = None  # middle of the ellipse; None: `centre`
+    centre: RigPoint = MOUTH_POINT
+    shape: RigPoint | None = None  # middle of the ellipse; None: `centre`
     radii: Annotated[Triple, Within(1.0, 100.0)] = (20.0, 10.0, 10.0)
-    edge: Annotated[Pair, Within(0.05, 10.0)] = (0.7, 1.0)  # falloff outside, inside
+    edge: Annotated[TwoNumbers, Within(0.05, 10.0)] = (0.7, 1.0)  # falloff outside, inside
     contraction: Annotated[Triple, Within(-2.0, 2.0)] = (0.2, 0.2, 0.2)
     push: Annotated[Triple, Within(-30.0, 30.0)] = (0.0, 0.0, 0.0)
     bulge: Annotated[float, Within(0.0, 40.0)] = 0.0  # mm outward along the skin's normal
     # mm up for the upper, down for the lower lip; away from an opening
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
     # about the centre: skin above it goes forward, skin in front of it to the side
-    turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
+    turn_deg: Annotated[TwoNumbers, Within(-90.0, 90.0)] = (0.0, 0.0)
     # of a round opening between the lips, as a share of the mouth's width; 0: none
     opening_width: Annotated[float, Within(0.0, 3.0)] = 0.0
     opening_height: Annotated[float, Within(0.0, 30.0)] = 0.0  # mm, of each lip's half of it

@@ -41,7 +41,7 @@ from .warp import nearest_on
 LANDMARK_COUNT = 68
 LIST_KEY = "landmarks"  # key of the landmarks, if the file has several lists
 GUESSED_KEY = "guessed"
-Point = Annotated[tuple[float, float, float], Within(-FARTHEST_COORDINATE, FARTHEST_COORDINATE)]
+FilePoint = Annotated[tuple[float, float, float], Within(-FARTHEST_COORDINATE, FARTHEST_COORDINATE)]
 INNER_LIP_LANDMARKS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIP_LANDMARKS = ((50, 51, 52), (56, 57, 58))
 
@@ -156,7 +156,7 @@ def _indices(found: list[Any], count: int) -> Integers32:
 
 def _points(found: list[Any]) -> Floats64:
     try:
-        return np.array(_read_each(Point, found))
+        return np.array(_read_each(FilePoint, found))
     except ValueError as error:
         raise AssetError(
             f"{error}; all landmarks must be vertex indices, or all must be points [x, y, z] on "

@@ -29,7 +29,7 @@ FILL_COLOUR = (236, 240, 245)
 NEW_COLOUR = (0, 114, 178)
 SECOND_COLOUR = (213, 94, 0)
 Colour = tuple[int, int, int]
-Place = npt.ArrayLike
+FigurePoint = npt.ArrayLike
 
 
 class Diagram:
@@ -50,34 +50,34 @@ class Diagram:
         return np.asarray(self._image.resize(self.size, PIL.Image.Resampling.LANCZOS))
 
     def line(
-        self, points: Sequence[Place], colour: Colour = INK_COLOUR, width: float = 1.2
+        self, points: Sequence[FigurePoint], colour: Colour = INK_COLOUR, width: float = 1.2
     ) -> None:
         """A polyline; its width in pixels."""
         places = [self._place(point) for point in points]
         self._draw.line(places, fill=colour, width=round(width * self.SCALE), joint="curve")
 
-    def polygon(self, points: Sequence[Place], fill: Colour) -> None:
+    def polygon(self, points: Sequence[FigurePoint], fill: Colour) -> None:
         """A filled area."""
         self._draw.polygon([self._place(point) for point in points], fill=fill)
 
-    def disc(self, point: Place, colour: Colour, radius: float = 3.0) -> None:
+    def disc(self, point: FigurePoint, colour: Colour, radius: float = 3.0) -> None:
         """A round mark."""
         x, y = self._place(point)
         reach = radius * self.SCALE
         self._draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=colour)
 
     def text(
-        self, point: Place, text: str, colour: Colour = INK_COLOUR, size: float = 12.0
+        self, point: FigurePoint, text: str, colour: Colour = INK_COLOUR, size: float = 12.0
     ) -> None:
         """Text around a point."""
         self._draw.text(self._place(point), text, colour, font(size * self.SCALE), "mm")
 
-    def _place(self, point: Place) -> tuple[float, float]:
+    def _place(self, point: FigurePoint) -> tuple[float, float]:
         x, y = np.asarray(point, dtype=np.float64)
         return float(x * self.SCALE), float((self.size[1] - y) * self.SCALE)
 
 
-def equilateral(centre: Place, side: float) -> Floats64:
+def equilateral(centre: FigurePoint, side: float) -> Floats64:
     """Corners 0, 1, 2 of an upright triangle, counter-clockwise from the lower left, (3, 2)."""
     height = side * np.sqrt(3.0) / 2.0
     lower_left = (-side / 2, -height / 2)

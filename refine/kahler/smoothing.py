@@ -114,7 +114,7 @@ class LoopScheme(Scheme):
             self._kept, self._inside_count = kept_rows(frame, self._around, self._rings)
 
     def place(self, frame: FrameBuffers) -> None:
-        """Write moved vertices, first level, second level."""
+        """Write moved vertices, then points of the first level, then those of the second."""
         if threads_for(len(frame.points) + int(frame.counts[SPLIT_EDGES])) > 1:
             if self._kept is None:
                 self._place_shared(frame)

@@ -35,7 +35,7 @@ from ..session.document import History
 
 INNER_LIP_LANDMARKS = range(60, 68)
 
-Place = tuple[float, float, float]  # in the mesh's own coordinates
+MeshPoint = tuple[float, float, float]  # in the mesh's own coordinates
 Colour = tuple[float, float, float]  # sRGB
 
 
@@ -76,7 +76,7 @@ MARKING_ORDER = tuple(GROUP_OF)
 class Marks:
     """Points of the existing landmarks; `guessed`: numbers of landmarks that no user placed."""
 
-    places: Mapping[int, Place]
+    places: Mapping[int, MeshPoint]
     guessed: frozenset[int] = frozenset()
 
     def placed(self, number: int, place: npt.ArrayLike) -> Marks:
@@ -90,7 +90,7 @@ class Marks:
         return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
 
     @property
-    def by_hand(self) -> dict[int, Place]:
+    def by_hand(self) -> dict[int, MeshPoint]:
         """The marks that were placed by hand."""
         return {n: place for n, place in self.places.items() if n not in self.guessed}
 
@@ -156,7 +156,7 @@ class Marking:
         """Whether the marks have turned the mesh upright."""
         return self.placing is self._upright
 
-    def _make_upright(self, known: Mapping[int, Place]) -> None:
+    def _make_upright(self, known: Mapping[int, MeshPoint]) -> None:
         """Turn the mesh upright and scale it, once; raises AssetError if no face fits the marks."""
         upright = placing(known)
         if not self.is_upright:

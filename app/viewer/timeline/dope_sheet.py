@@ -176,7 +176,7 @@ class DopeSheet:
             self._hover(io, place.x)
         imgui.end_child()
 
-    def _draw_name(self, track: Track, corner: key_marks.Point, room: float) -> None:
+    def _draw_name(self, track: Track, corner: key_marks.WindowPoint, room: float) -> None:
         arrow = em(0.9) if track.is_sum else 0.0
         indent = em(0.5) * len(track.parents)
         x = corner[0] + indent

@@ -18,7 +18,7 @@ from ...script.easings import free_easing
 from ...script.key_sets import NO_KEYS, KeyId, KeySet, is_any_of
 from ...script.keyframes import EQUAL_TOLERANCE
 from ..interface.gui import Gui, em, ink_of
-from .key_marks import Point, draw_line
+from .key_marks import WindowPoint, draw_line
 from .keys import KeySelection, Track
 from .time_axis import TimeAxis
 
@@ -40,8 +40,8 @@ class Handle(NamedTuple):
     number: int  # 0: at the start of the segment, 1: at its end
     slopes: tuple[float, float]  # at both ends, relative to the mean slope
     ends: tuple[float, float]  # the values at this end and at the other end of the segment
-    place: Point
-    root: Point  # place of this end
+    place: WindowPoint
+    root: WindowPoint  # place of this end
 
 
 class Graph:
@@ -148,7 +148,7 @@ class Graph:
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
         return free_easing(*slopes)
 
-    def inside(self, first: Point, last: Point) -> KeySet:
+    def inside(self, first: WindowPoint, last: WindowPoint) -> KeySet:
         """Return the keys in a box."""
         (begin, end), (top, bottom) = (sorted(each) for each in zip(first, last, strict=True))
         found = NO_KEYS
@@ -167,7 +167,7 @@ class Graph:
 
     # Drawing
 
-    def draw(self, edges: Point, duration: float, *, is_held: bool) -> None:
+    def draw(self, edges: WindowPoint, duration: float, *, is_held: bool) -> None:
         """Draw the graph between an upper and a lower edge [window units].
 
         duration: duration of the script [s]. is_held: whether the mouse holds a curve, so that the
@@ -193,7 +193,7 @@ class Graph:
         self._draw_handles()
         lines.pop_clip_rect()
 
-    def _fit(self, edges: Point) -> None:
+    def _fit(self, edges: WindowPoint) -> None:
         """Fit the value axis between the edges, so that all values are visible."""
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
         self._low = min(ends)
@@ -203,7 +203,7 @@ class Graph:
         height = max(self._bottom - edges[0] - em(padding), 1.0)
         self.slope = -height / (self._high - self._low)
 
-    def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
+    def _draw_ground(self, low: WindowPoint, high: WindowPoint, script_end: float) -> None:
         """Draw the background between two corners, stronger up to the script's end."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()

@@ -20,7 +20,7 @@ from .time_axis import TimeAxis
 
 FLAG_SIZE = 0.7  # [em] of the handle at the script's end
 
-Point = tuple[float, float]
+WindowPoint = tuple[float, float]
 
 
 def draw_ruler(
@@ -72,7 +72,7 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
 
 
 def draw_label(
-    text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
+    text: str, corner: WindowPoint, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:
     """Draw the name of a row at its upper left corner, with an arrow if it folds."""
     lines = imgui.get_window_draw_list()
@@ -169,7 +169,7 @@ def draw_line(xs: Floats64, ys: Floats64, ink: int, width: float = 1.0) -> None:
     imgui.get_window_draw_list().add_polyline(points, ink, width, 0)
 
 
-def draw_box(theme: Theme, first: Point, last: Point) -> None:
+def draw_box(theme: Theme, first: WindowPoint, last: WindowPoint) -> None:
     """Draw the box of a drag over an empty place."""
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
@@ -198,7 +198,7 @@ class Waveform:
         sound = self._soundtrack.sound
         return sound.duration if sound is not None else 0.0
 
-    def draw(self, time: float, duration: float, corner: Point) -> None:
+    def draw(self, time: float, duration: float, corner: WindowPoint) -> None:
         """Draw the waveform from its upper left corner; it is faint after the script's end.
 
         time: the current time [s]. duration: duration of the script [s].
