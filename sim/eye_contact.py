@@ -24,84 +24,121 @@ from .surface import SkinSurface
 EYE_CLEARANCE = 0.3  # mm between a vertex and the eyeball: thickness of a lid
 
 
-class EyeContact(NamedTuple):
-    """Skin near an eyeball: vertices, and long triangles, which may cut the ball between vertices.
+class Balls(NamedTuple):
+    """The eyeballs of a face."""
 
-    Skin that is nearer to a ball at rest than a lid is thick may stay as deep.
-    """
-
-    vertex: Integers32  # (C,)
-    eye: Integers32  # (C,)
-    least: Floats64  # (C,) mm, least distance from the centre beside the cornea
-    sunk: Floats64  # (C,) mm, depth at rest
-    faces: Integers32  # (T, 3) long triangles that face away from a ball
-    corners: Integers32  # (n,) their vertices
-    corner_eye: Integers32  # (n,)
-    face_eye: Integers32  # (T,)
-    face_reach: Floats64  # (T,) mm, least distance of the corners at which no point is too near
-    shares: Floats64  # (S, 3) barycentric coordinates of the points that are tested
-    face_least: Floats64  # (T, S) mm
-    face_sunk: Floats64  # (T, S) mm
     centres: Floats64  # (eyes, 3)
     radii: Floats64  # (eyes,)
     irises: Floats64  # (eyes,) mm, radii of the irises
     tops: Floats64  # (eyes,) mm, distance that skin keeps from the centre before the pupil
 
+
+class NearVertices(NamedTuple):
+    """Vertices near an eyeball; each belongs to one."""
+
+    vertex: Integers32  # (C,)
+    eye: Integers32  # (C,)
+    least: Floats64  # (C,) mm, least distance from the centre beside the cornea
+    sunk: Floats64  # (C,) mm, depth at rest
+
+
+class LongTriangles(NamedTuple):
+    """Triangles that face away from an eyeball, and may cut it between their vertices."""
+
+    faces: Integers32  # (T, 3)
+    eye: Integers32  # (T,)
+    reach: Floats64  # (T,) mm, least distance of the corners at which no point is too near
+    least: Floats64  # (T, S) mm, as of a vertex, for each tested point
+    sunk: Floats64  # (T, S) mm
+    shares: Floats64  # (S, 3) barycentric coordinates of the points that are tested
+    corners: Integers32  # (n,) vertices of the triangles
+    corner_eye: Integers32  # (n,)
+
+
+class EyeContact(NamedTuple):
+    """Skin near the eyeballs.
+
+    Skin that is nearer to a ball at rest than a lid is thick may stay as deep.
+    """
+
+    balls: Balls
+    near: NearVertices
+    long: LongTriangles
+
     def deepest(self, x: Floats64, looks: Floats64) -> float:
         """Greatest depth of vertices (V, 3) inside an eyeball [mm]; looks: see `Bones.looks`."""
-        away = x[self.vertex] - self.centres[self.eye]
+        balls = self.balls
+        near = self.near
+        away = x[near.vertex] - balls.centres[near.eye]
         distance = np.linalg.norm(away, axis=1)
-        ahead = (away * looks[self.eye]).sum(axis=1) / np.maximum(distance, 1e-9)
-        least = self.least.copy()
-        for eye, (radius, iris) in enumerate(zip(self.radii, self.irises, strict=True)):
-            own = self.eye == eye
+        ahead = (away * looks[near.eye]).sum(axis=1) / np.maximum(distance, 1e-9)
+        least = near.least.copy()
+        for eye, (radius, iris) in enumerate(zip(balls.radii, balls.irises, strict=True)):
+            own = near.eye == eye
             surface = ball_surface(ahead[own], radius, iris)
-            least[own] = np.maximum(least[own], surface + EYE_CLEARANCE - self.sunk[own])
+            least[own] = np.maximum(least[own], surface + EYE_CLEARANCE - near.sunk[own])
         return float((least - distance).max(initial=0.0))
 
 
 def watch_eyeballs(surface: SkinSurface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
     """Find the skin that could touch an eyeball; skin inside it may not sink deeper."""
-    x = surface.positions
-    shares = barycentric_grid()
-    rows = []
-    tops = []
-    for number, ball in enumerate(eyeballs):
-        vertex = _vertices_near_ball(x, ball)
-        least, sunk = _kept_out(x[vertex], ball)
-        faces, longest = _long_faces(surface, vertex, ball)
-        top = ball_surface(1.0, ball.radius, ball.iris) + EYE_CLEARANCE
-        # No point of a triangle is farther than this from its nearest corner.
-        stretched = 1.3  # times its length at rest that an edge grows at most
-        face_reach = np.sqrt(top**2 + (stretched * longest) ** 2 / 3.0)
-        face_least, face_sunk = _kept_out(shares @ x[faces], ball)
-        of_eye = (np.full(len(each), number, np.int32) for each in (vertex, faces))
-        rows.append((vertex, faces, least, sunk, face_reach, face_least, face_sunk, *of_eye))
-        tops.append(top)
-    none = np.zeros(0)
-    no_points = np.zeros((0, len(shares)))
-    rows.append((none, np.zeros((0, 3)), none, none, none, no_points, no_points, none, none))
-    vertex, faces, least, sunk, face_reach, face_least, face_sunk, eye, face_eye = (
-        np.concatenate(column) for column in zip(*rows, strict=True)
-    )
-    corners, first = np.unique(faces, return_index=True)
-    return EyeContact(
-        vertex=vertex.astype(np.int32),
-        eye=eye.astype(np.int32),
-        least=least,
-        sunk=sunk,
-        faces=faces.astype(np.int32),
-        corners=corners.astype(np.int32),
-        corner_eye=np.repeat(face_eye, 3)[first].astype(np.int32),
-        face_eye=face_eye.astype(np.int32),
-        face_reach=face_reach,
-        shares=shares,
-        face_least=face_least,
-        face_sunk=face_sunk,
+    balls = Balls(
         centres=np.array([ball.centre for ball in eyeballs]).reshape(-1, 3),
         radii=np.array([ball.radius for ball in eyeballs]),
         irises=np.array([ball.iris for ball in eyeballs]),
-        tops=np.array(tops),
+        tops=np.array([_top_of(ball) for ball in eyeballs]),
+    )
+    near = [_vertices_near_ball(surface.positions, ball) for ball in eyeballs]
+    return EyeContact(
+        balls, _near_vertices(surface, eyeballs, near), _long_triangles(surface, eyeballs, near)
+    )
+
+
+def _top_of(ball: Eyeball) -> float:
+    """Distance that skin keeps from the centre of a ball before the pupil [mm]."""
+    return float(ball_surface(1.0, ball.radius, ball.iris)) + EYE_CLEARANCE
+
+
+def _near_vertices(
+    surface: SkinSurface, eyeballs: tuple[Eyeball, ...], near: list[Integers64]
+) -> NearVertices:
+    """Measure the vertices near each ball at rest; near: their indices, (n,) for each ball."""
+    rows = [(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0))]
+    for number, (ball, vertex) in enumerate(zip(eyeballs, near, strict=True)):
+        least, sunk = _kept_out(surface.positions[vertex], ball)
+        rows.append((vertex, np.full(len(vertex), number), least, sunk))
+    vertex, eye, least, sunk = (np.concatenate(column) for column in zip(*rows, strict=True))
+    return NearVertices(vertex.astype(np.int32), eye.astype(np.int32), least, sunk)
+
+
+def _long_triangles(
+    surface: SkinSurface, eyeballs: tuple[Eyeball, ...], near: list[Integers64]
+) -> LongTriangles:
+    """Find and measure the long triangles near each ball; near: as in `_near_vertices`."""
+    x = surface.positions
+    shares = barycentric_grid()
+    no_points = np.zeros((0, len(shares)))
+    no_faces = np.zeros((0, 3), np.int32)
+    rows = [(no_faces, np.zeros(0, np.int64), np.zeros(0), no_points, no_points)]
+    for number, (ball, vertex) in enumerate(zip(eyeballs, near, strict=True)):
+        faces, longest = _long_faces(surface, vertex, ball)
+        # No point of a triangle is farther than this from its nearest corner.
+        stretched = 1.3  # times its length at rest that an edge grows at most
+        reach = np.sqrt(_top_of(ball) ** 2 + (stretched * longest) ** 2 / 3.0)
+        rows.append(
+            (faces, np.full(len(faces), number), reach, *_kept_out(shares @ x[faces], ball))
+        )
+    faces, eye, reach, least, sunk = (np.concatenate(column) for column in zip(*rows, strict=True))
+    corners, first = np.unique(faces, return_index=True)
+    return LongTriangles(
+        faces=faces,
+        eye=eye.astype(np.int32),
+        reach=reach,
+        least=least,
+        sunk=sunk,
+        shares=shares,
+        corners=corners.astype(np.int32),
+        corner_eye=np.repeat(eye, 3)[first].astype(np.int32),
     )
 
 
@@ -155,12 +192,14 @@ def keep_out_of_eyeballs(state: State, eyes: EyeContact, looks: Floats64) -> Non
     looks: unit vector along which each eyeball looks, (eyes, 3).
     """
     x = state.x
-    for c in range(len(eyes.vertex)):
-        i = eyes.vertex[c]
-        e = eyes.eye[c]
-        ball = (eyes.radii[e], eyes.irises[e], eyes.tops[e])
-        away = between(eyes.centres[e], x[i])
-        depth = depth_in_ball(away, looks[e], ball, (eyes.least[c], eyes.sunk[c]))
+    balls = eyes.balls
+    near = eyes.near
+    for c in range(len(near.vertex)):
+        i = near.vertex[c]
+        e = near.eye[c]
+        ball = (balls.radii[e], balls.irises[e], balls.tops[e])
+        away = between(balls.centres[e], x[i])
+        depth = depth_in_ball(away, looks[e], ball, (near.least[c], near.sunk[c]))
         if depth > 0.0:
             push_out(state, i, away, depth)
 
@@ -173,23 +212,25 @@ def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
     A corner of several triangles moves as far as one of them needs.
     """
     x = state.x
-    shares = eyes.shares
+    balls = eyes.balls
+    long = eyes.long
+    shares = long.shares
     lift = state.work  # first column: of each vertex [mm]
     cut = False
-    for t in range(len(eyes.faces)):
-        a, b, c = eyes.faces[t]
-        e = eyes.face_eye[t]
-        centre = eyes.centres[e]
+    for t in range(len(long.faces)):
+        a, b, c = long.faces[t]
+        e = long.eye[t]
+        centre = balls.centres[e]
         nearest = min(length(between(centre, x[a])), length(between(centre, x[b])))
         nearest = min(nearest, length(between(centre, x[c])))
-        if nearest > eyes.face_reach[t]:
+        if nearest > long.reach[t]:
             continue
-        ball = (eyes.radii[e], eyes.irises[e], eyes.tops[e])
+        ball = (balls.radii[e], balls.irises[e], balls.tops[e])
         deepest = 0.0
         where = 0
         for s in range(len(shares)):
             away = mixed(x, (a, b, c), shares[s], centre)
-            kept = (eyes.face_least[t, s], eyes.face_sunk[t, s])
+            kept = (long.least[t, s], long.sunk[t, s])
             depth = depth_in_ball(away, looks[e], ball, kept)
             if depth > deepest:
                 deepest = depth
@@ -202,13 +243,13 @@ def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
         weight = shares[where]
         part = deepest / (weight[0] ** 2 + weight[1] ** 2 + weight[2] ** 2)
         for k in range(3):
-            i = eyes.faces[t, k]
+            i = long.faces[t, k]
             lift[i, 0] = max(lift[i, 0], part * weight[k])
     if cut:
-        for row in range(len(eyes.corners)):
-            i = eyes.corners[row]
+        for row in range(len(long.corners)):
+            i = long.corners[row]
             if lift[i, 0] > 0.0:
-                push_out(state, i, between(eyes.centres[eyes.corner_eye[row]], x[i]), lift[i, 0])
+                push_out(state, i, between(balls.centres[long.corner_eye[row]], x[i]), lift[i, 0])
 
 
 @njit
@@ -240,7 +281,7 @@ def depth_in_ball(away: Triple, look: Floats64, ball: Triple, kept: tuple[float,
 
     away: from the ball's centre [mm]. look: unit vector along which the ball looks, (3,). ball:
     radii of ball and iris, and distance that skin keeps from the centre before the pupil [mm].
-    kept: the point's `least` and `sunk` of `EyeContact` [mm].
+    kept: the point's `least` and `sunk` of `NearVertices` [mm].
     """
     distance = length(away)
     if distance >= ball[2] or distance == 0.0:

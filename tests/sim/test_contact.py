@@ -27,8 +27,8 @@ def test_skin_may_come_as_near_as_a_lid_is_thick():
         positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8], faces=np.zeros((0, 3), np.int32)
     )
     eyes = watch_eyeballs(skin, (ball,))
-    assert eyes.vertex.tolist() == [0, 1, 2, 3]
-    assert eyes.least == approx([10.0, 12.1, 12.3, 12.3])
+    assert eyes.near.vertex.tolist() == [0, 1, 2, 3]
+    assert eyes.near.least == approx([10.0, 12.1, 12.3, 12.3])
     sunk = ball.centre + np.array([10.0, 12.1, 11.8, 12.3, 1.0])[:, None] * [0.0, 0.6, 0.8]
     assert eyes.deepest(sunk, np.array([FORWARD])) == approx(0.5)
 
@@ -51,7 +51,7 @@ def test_a_cornea_does_not_pierce_a_lid(look, size):
     The cornea turns with the gaze, and a long triangle is flat between vertices that are outside.
     """
     ball, surface, eyes = flat_lid(size)
-    assert len(eyes.faces) == (size > 2.0)
+    assert len(eyes.long.faces) == (size > 2.0)
     state = State.at_rest(surface)
     looks = np.array([look])
     flat = surface.positions - surface.positions.mean(axis=0)
