@@ -96,7 +96,7 @@ class Coverage:
 
 def part_numbers(placed: PlacedBuffers) -> Numbers:
     """Return the surface numbers of a part."""
-    return placed.number, 0.0, placed.number
+    return float(placed.number), 0.0, float(placed.number)
 
 
 def set_numbers(program: moderngl.Program, numbers: Numbers, view: PlacedView) -> None:

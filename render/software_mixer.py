@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers32
 from ..geometry.directions import unit_vectors
+from ..geometry.read_only import read_only
 from .camera import PlacedView
 from .coverage import SKIN_NUMBERS, Drawn, Numbers, part_numbers
 from .frame import CutPlane, Skin
@@ -60,7 +61,11 @@ class SoftwareMixer:
         to_area = _clip_to(area, view)
         with np.errstate(all="ignore"):  # triangles with infinite corners are not drawn
             for surface in _visible_surfaces(drawn, view):
-                placed = surface._replace(corners=surface.corners @ to_area)
+                # One type of triangles, so that the kernel is compiled once.
+                placed = surface._replace(
+                    corners=surface.corners @ to_area,
+                    triangles=read_only(np.ascontiguousarray(surface.triangles, np.int32)),
+                )
                 rasterise(*placed, pixels, depths, seen)
         least, scale = view.depth_range
         depths = np.clip((depths - least) * scale, 0.0, 1.0)

@@ -19,6 +19,7 @@ from ..jit import njit
 from .arrays import Floats64, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
+from .read_only import read_only
 
 LEAF_SIZE = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
@@ -73,7 +74,7 @@ class MeshSearch:
         wrong_side: float = 0.0,
     ) -> SurfacePoints:
         """Find the closest points, as `closest_points` does."""
-        queries = np.ascontiguousarray(points, dtype=np.float64)
+        queries = read_only(np.ascontiguousarray(points, dtype=np.float64))
         wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
         distances = np.empty(len(queries))
         triangles = np.empty(len(queries), np.int64)

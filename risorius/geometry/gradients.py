@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .arrays import Floats32, Floats64, Integers32
+from .read_only import read_only
 
 
 class TextureGradients:
@@ -16,8 +17,8 @@ class TextureGradients:
 
     def __init__(self, faces: Integers32, uv: Floats32, face_uv: Integers32) -> None:
         """Bind triangles (F, 3), texture coordinates (U, 2), their indices at corners (F, 3)."""
-        self._faces = np.ascontiguousarray(faces)
-        self._face_uv = np.ascontiguousarray(face_uv)
+        self._faces = read_only(np.ascontiguousarray(faces))
+        self._face_uv = read_only(np.ascontiguousarray(face_uv))
         self._corners = uv.astype(np.float64)[face_uv]
         self._sums = np.zeros((len(uv), 7))
 
@@ -27,6 +28,7 @@ class TextureGradients:
         positions: positions of the vertices, shape (V, 3).
         """
         self._sums[:] = 0.0
+        positions = read_only(positions)
         _add_gradients(positions, self._faces, self._face_uv, self._corners, self._sums)
         area = np.maximum(self._sums[:, 6:], 1e-30)
         gradients: Floats32 = (self._sums[:, :6] / area).astype(np.float32)

@@ -11,13 +11,14 @@ import numpy.typing as npt
 from ..jit import njit
 from .arrays import Floats64, Integers32, Integers64
 from .rays import cutting
+from .read_only import read_only
 
 
 def self_intersections(vertices: npt.NDArray[np.floating], faces: Integers32) -> Integers32:
     """Pairs of faces (F, 3) without a common vertex that cut through each other, shape (k, 2)."""
     corners = np.asarray(vertices, dtype=np.float64)[faces]
     pairs = near_pairs(corners)
-    return np.asarray(pairs[cutting(corners, faces, pairs)], np.int32)
+    return np.asarray(pairs[cutting(corners, read_only(faces), pairs)], np.int32)
 
 
 def near_pairs(corners: Floats64) -> Integers64:

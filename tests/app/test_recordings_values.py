@@ -191,7 +191,7 @@ def test_heads_beside_shapes(layout, tmp_path):
 def test_a_head_turned_about_three_axes(tmp_path):
     """Yaw, pitch and roll of a matrix are those by which the simulation turns a head."""
     angles = np.radians([20.0, -15.0, -12.0])  # to the left, down, and to the right shoulder
-    turn, _ = turn_head(np.zeros((2, 3)), np.zeros(3), tuple(angles))
+    turn, _ = turn_head(np.zeros((2, 3)), (0.0, 0.0, 0.0), tuple(angles))
     rows = [{**frame, "headMatrix": turn.tolist()} for frame in FRAMES]
     channels = of_json(tmp_path, rows).channels
     assert channels["head_yaw"] == approx(20.0)

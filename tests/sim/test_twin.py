@@ -243,7 +243,7 @@ def test_muscle_pull(stirred, model, state):
     """Attachment and pull of all muscles equal sums muscle by muscle and line by line."""
     mandible = stirred.bones.mandible
     muscles = model.muscles
-    weight = model.skull.mandible_weight
+    weight = stirred.bones.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold = np.zeros(len(weight))
     force = np.zeros((len(weight), 3))
@@ -286,7 +286,7 @@ def test_bones_carry_anchors(stirred, model, state):
     """Anchors blend cranium and mandible by weight; their normals keep length one."""
     mandible = stirred.bones.mandible
     surface = model.surface
-    weight = model.skull.mandible_weight
+    weight = stirred.bones.mandible_weight
     carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)
     assert np.abs(moved).max() > 5.0
