@@ -24,6 +24,8 @@ from .presets import PAPERS_CRITERION, PRESETS, STATIC_REFINER, THRESHOLD_OPTION
 Splits = npt.NDArray[np.uint8]
 
 CUBIC_SCHEME = "cubic"
+SIDES = "left", "right"  # of the built-in head's rings
+EAR_VERTEX_COUNT = 14  # number of vertices along the free edge of an ear
 DETAIL_SCHEME = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
 NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
 OPTION_MARK = "."  # mark between a criterion and its option
@@ -54,9 +56,10 @@ def refiner_for(
             if finer is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
             options["scheme"] = refine.DetailScheme(finer)
-        # A refiner by name has neither, because the graphics card cannot draw them.
+        # A refiner by name has none of these, because the graphics card cannot draw them.
         if refinement.refiner is None and options.get("scheme") == CUBIC_SCHEME:
-            options["scheme"] = refine.CubicScheme(_outlines(scene), _backs_of_lids(scene))
+            outlines, curves = _rims(scene)
+            options["scheme"] = refine.CubicScheme(outlines, _backs_of_lids(scene), curves)
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
@@ -160,15 +163,20 @@ def _takes_own_schemes(refiner: str) -> bool:
     return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
 
 
-def _outlines(scene: Drawable) -> list[list[int]]:
-    """Return the rims of nostrils, outlines from below, of the built-in head and of persons.
+def _rims(scene: Drawable) -> tuple[list[list[int]], list[list[int]]]:
+    """Return sharp and rounded rims of the built-in head and of persons; others have none.
 
-    The first vertex of a rim is the outermost. It lies in a fold, so its edges are not an outline.
+    The sharp ones are rims of nostrils, outlines from below. The first vertex of such a rim is the
+    outermost; it lies in a fold, so its edges are not an outline. The rounded ones are two rows of
+    vertices along the free edge of each ear, outlines from the side and from the front.
     """
     if scene.face is None or not isinstance(scene.face.head, assets.Head | Person):
-        return []
-    rims = [assets.load("head").rings[f"nostril_{side}"].tolist() for side in ("left", "right")]
-    return [[*rim, rim[0]] for rim in rims]
+        return [], []
+    rings = assets.load("head").rings
+    nostrils = [rings[f"nostril_{side}"].tolist() for side in SIDES]
+    ears = [rings[f"ear_{row}_{side}"].tolist() for row in (1, 2) for side in SIDES]
+    # The last vertices are those of the concha, which both rows share.
+    return [[*rim, rim[0]] for rim in nostrils], [row[:EAR_VERTEX_COUNT] for row in ears]
 
 
 def _backs_of_lids(scene: Drawable) -> list[int]:

@@ -108,15 +108,22 @@ class CubicScheme(Scheme):
     uses_normals = False
     measures = True
 
-    def __init__(self, outlines: Sequence[Sequence[int]] = (), backs: Sequence[int] = ()) -> None:
+    def __init__(
+        self,
+        outlines: Sequence[Sequence[int]] = (),
+        backs: Sequence[int] = (),
+        curves: Sequence[Sequence[int]] = (),
+    ) -> None:
         """Choose rims, and folds.
 
         - `outlines`: vertices along rims within the surface, whose edges bend like borders. The
           first and the last edge of a rim only give their direction to their neighbours.
         - `backs`: triangles behind folds, as inner sides of lids. A vertex that they share with
           other triangles has the normal of the others: a mean of both sides is normal to neither.
+        - `curves`: as `outlines`, but the surface is smooth across them, as across rims of ears.
         """
-        self._outlines = [[int(vertex) for vertex in outline] for outline in outlines]
+        self._outlines = [list(rim) for rim in outlines]
+        self._rims = [*self._outlines, *(list(rim) for rim in curves)]
         self._backs = [int(triangle) for triangle in backs]
 
     def outlined(self, connectivity: Connectivity) -> Flags:
@@ -125,16 +132,19 @@ class CubicScheme(Scheme):
 
     def is_back(self, connectivity: Connectivity) -> Flags:
         """Flags of triangles behind folds, shape (F,)."""
-        found = np.zeros(len(connectivity.faces), np.bool_)
-        found[self._backs] = True
-        return found
+        return np.isin(np.arange(len(connectivity.faces)), self._backs)
+
+    def curved(self, connectivity: Connectivity) -> Flags:
+        """Edges of the outlines and of the curves, shape (E,)."""
+        return edges_of_outlines(connectivity, self._rims)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Floats64, rest_normals: Floats32
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders and outlines."""
         mesh = self._mesh = sharpened(connectivity, self.outlined(connectivity))
-        self._around = mesh.around
+        bent = sharpened(mesh, self.curved(connectivity))
+        self._around = bent.around
         sectors = sectors_of(mesh)
         self._fans = fans_around(sectors.corners, sectors.edges, sectors.sector_count)
         self._displacements = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
@@ -150,7 +160,7 @@ class CubicScheme(Scheme):
             steeper=np.zeros_like(sector_normals),
             off=(STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
             ends=sectors.edges[: len(mesh.edges)],
-            beyond=follow_outlines(mesh, follow_borders(mesh, rest_positions), self._outlines),
+            beyond=follow_outlines(bent, follow_borders(mesh, rest_positions), self._rims),
         )
         # For shading, both sides of a crease are one surface, as in the input.
         self._normals = sector_normals

@@ -79,7 +79,7 @@ class Displacement(Measuring):
         super().bind(connectivity, rest_positions, rest_normals)
         self._unit = mean_length(connectivity, rest_positions)
         self._turns = np.zeros(len(connectivity.edges), dtype=np.float32)
-        is_outline = ~connectivity.around.is_interior | self._scheme.outlined(connectivity)
+        is_outline = ~connectivity.around.is_interior | self._scheme.curved(connectivity)
         self._borders = np.flatnonzero(is_outline).astype(np.uint32)
 
     def measure(self, positions: Floats64, normals: Floats32, metric: Floats32) -> None:

@@ -106,6 +106,10 @@ class RefinedNormals(Scheme):
         """Flags of triangles that the scheme leaves out of normals of other triangles, (F,)."""
         return self._scheme.is_back(connectivity)
 
+    def curved(self, connectivity: Connectivity) -> Flags:
+        """Flags of interior edges that the scheme bends like borders, shape (E,)."""
+        return self._scheme.curved(connectivity)
+
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split moves the midpoint of every edge, and turns its normal, (E,) each.
 

@@ -62,6 +62,10 @@ class Scheme:
         """Flags of triangles that do not count in normals of other triangles, (F,); none here."""
         return np.zeros(len(connectivity.faces), np.bool_)
 
+    def curved(self, connectivity: Connectivity) -> Flags:
+        """Flags of interior edges that bend like borders, shape (E,); by default the outlines."""
+        return self.outlined(connectivity)
+
     def measure(self, displacements: Floats32, turns: Floats32) -> None:
         """Write how far a split would move each edge's midpoint and turn its normal, (E,) each.
 

@@ -59,10 +59,11 @@ def radii_between(refiner, positions, rim):
     return np.array(curves), np.array(chords)
 
 
-def test_a_rim_is_nearly_a_circle():
+@pytest.mark.parametrize("kind", ["outlines", "curves"])
+def test_a_rim_is_nearly_a_circle(kind):
     """Curves of a rim with nine sides stay within 1 % of its circle; their chords do not."""
     vertices, faces = pit()
-    scheme = refine.CubicScheme(outlines=[[*range(POINT_COUNT), 0]])
+    scheme = refine.CubicScheme(**{kind: [[*range(POINT_COUNT), 0]]})
     refiner = refine.create("kahler", faces, vertices, scheme=scheme, criterion="displacement")
     curves, chords = radii_between(refiner, vertices, [*range(POINT_COUNT)])
     assert np.abs(curves - 1.0).max() < 0.01
@@ -114,3 +115,33 @@ def test_nostrils_are_rounder_than_polygons(person):
         rim = load("head").rings[f"nostril_{side}"].tolist()
         curves, chords = radii_between(refiner, scene.rest_positions, rim)
         assert (curves > 1.03 * chords).all()
+
+
+def turns_along(points):
+    """Angles [degrees] between consecutive sides of a polyline, for points (n, 3)."""
+    sides = np.diff(points, axis=0)
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    return np.degrees(np.arccos((sides[1:] * sides[:-1]).sum(axis=1)))
+
+
+@pytest.mark.parametrize("person", [None, 7])
+@pytest.mark.parametrize("row", [1, 2])
+def test_ears_are_rounder_than_polygons(person, row):
+    """Refined rims of ears turn by at most 0.7 of the unrefined rims' greatest turn."""
+    scene = FaceScene(None if person is None else person_called(person))
+    refiner = refiner_for(scene, Refinement())
+    mesh = refiner.refine(scene.rest_positions)
+    origins = refiner.origins()
+    for side in ("left", "right"):
+        rim = load("head").rings[f"ear_{row}_{side}"].tolist()[:14]
+        outline = []
+        for a, b in pairwise(rim[1:-1]):
+            ends = np.sort(origins.vertices[:, :2], axis=1) == sorted((a, b))
+            on_edge = ends.all(axis=1) & (origins.weights[:, 2] == 0.0)
+            points = mesh.positions[on_edge]
+            assert len(points)
+            along = points @ (scene.rest_positions[b] - scene.rest_positions[a])
+            outline += [scene.rest_positions[a], *points[np.argsort(along)]]
+        outline.append(scene.rest_positions[rim[-2]])
+        polygon = scene.rest_positions[rim[1:-1]]
+        assert turns_along(np.array(outline)).max() < 0.7 * turns_along(polygon).max()
