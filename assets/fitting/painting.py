@@ -30,6 +30,7 @@ from ..data_files import Image, read_arrays, read_image
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST_SIDE, MeshPictures
+from ..smooth import smooth_step
 from .mesh_validation import SkinPiece
 
 MAP_SIZE = 1024  # [texels] width and height of maps that are drawn again
@@ -122,34 +123,61 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
     return is_behind
 
 
-def plain_skin(known: Head) -> tuple[Image, Image]:
-    """Return the built-in albedo and ambient occlusion without ears and nostrils.
+def plain_picture(known: Head) -> Image:
+    """Return the built-in albedo without ears, nostrils and distinct strands of hair.
 
     Ears and nostrils of another head lie elsewhere; its shape and the light show them. The package
-    has both textures as data; `plain_picture` and `own_light` of revision c11b6d62 drew them.
+    has their texels as data; `plain_picture` of revision c11b6d62 drew them.
     """
     drawn = read_arrays(known.file_beside("_plain.npz"))
     picture = known.albedo.copy()
-    light = known.ambient_occlusion.copy()
     picture[drawn["is_drawn"]] = drawn["colours"]
+    return _with_even_hair(known, picture)
+
+
+def plain_light(known: Head) -> Image:
+    """Return the built-in ambient occlusion without ears and nostrils, as `plain_picture` does."""
+    drawn = read_arrays(known.file_beside("_plain.npz"))
+    light = known.ambient_occlusion.copy()
     light[drawn["is_lit"]] = drawn["light"]
-    return picture, light
+    return light
+
+
+def _with_even_hair(known: Head, picture: Image) -> Image:
+    """Reduce the contrast of strands in a texture, in the hair and along the hairline.
+
+    The strands follow the facets of the built-in scalp, so they are wavy on other heads.
+    """
+    size = 12.0  # [texels] of the Gaussian, wider than a strand
+    kept = 0.25  # fraction of the contrast
+    rows = slice(0, np.flatnonzero((known.segments == Segment.HAIR).any(axis=1))[-1] + 1)
+    is_hair = (known.segments[rows] == Segment.HAIR).astype(np.float32)
+    share = scipy.ndimage.gaussian_filter(is_hair, size)
+    near = picture[rows].astype(np.float32)
+    mean = scipy.ndimage.gaussian_filter(near, (size, size, 0.0))
+    hairy = scipy.ndimage.gaussian_filter(near * is_hair[:, :, None], (size, size, 0.0))
+    inside = (is_hair * smooth_step(0.5, 1.0, share))[:, :, None]
+    smooth = inside * hairy / np.maximum(share, 0.1)[:, :, None] + (1.0 - inside) * mean
+    strength = (1.0 - kept) * smooth_step(0.05, 0.4, share)[:, :, None]
+    even = picture.copy()
+    even[rows] = (near + strength * (smooth - near)).round().clip(0, 255)
+    return even
 
 
 def own_skin(known: Head, skin: SkinPiece) -> tuple[Image, Image]:
-    """Return the textures of `plain_skin` for another head, whose vertices are in the face space.
+    """Return plain albedo and ambient occlusion for another head, with vertices in the face space.
 
     Triangles of a coarse lid reach across its edge, and would show a part of the dark line of
     lashes as a patch that looks like a hole. So coarse lids have no line.
     """
-    picture, light = plain_skin(known)
+    picture = plain_picture(known)
     links = edges_of(skin.faces)
     at_lids = links[np.isin(links, skin.landmarks[[37, 38, 43, 44]]).any(axis=1)]
     lengths = np.linalg.norm(np.diff(skin.vertices[at_lids], axis=1)[:, 0], axis=1)
     coarse_lid_edge = 3.5  # [mm], mean of the edges at the landmarks of the upper lids
     if lengths.mean() > coarse_lid_edge:
         picture = _without_lash_roots(known, picture)
-    return picture, light
+    return picture, plain_light(known)
 
 
 def _without_lash_roots(known: Head, picture: Image) -> Image:
@@ -243,7 +271,7 @@ def maps_in(
     segments = np.full((MAP_SIZE, MAP_SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)
     light = np.full((MAP_SIZE, MAP_SIZE), 255, np.uint8)
-    light[texels.rows, texels.columns] = sampled(plain_skin(known)[1], place)
+    light[texels.rows, texels.columns] = sampled(plain_light(known), place)
     found = sampled(known.wrinkles.map, place)
     slope = _slopes_in(known, found, theirs, own, texels)
     steepest_percentile = 99.9  # [%] of slopes that are not clipped
@@ -265,7 +293,7 @@ def maps_over(
     theirs: layout of the triangles in the built-in maps. own: layout of the places where they are
     drawn over the same maps.
     """
-    light = plain_skin(known)[1]
+    light = plain_light(known)
     segments = drawn_over(known.segments, own, (known.segments, theirs))
     texels = texels_within(own, known.wrinkles.map.shape[:2])
     found = sampled(known.wrinkles.map, texels.interpolate(theirs.corners))

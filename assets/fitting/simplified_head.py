@@ -12,7 +12,7 @@ from ..errors import AssetError
 from ..loading import load
 from .head import FittedHead
 from .organs import with_eyelid_rims
-from .painting import TextureLayout, plain_skin, sampled, texels_within
+from .painting import TextureLayout, plain_light, plain_picture, sampled, texels_within
 from .simplifying import MOST_SIMULATED
 from .warp import nearest_on
 
@@ -30,7 +30,6 @@ def simplified_head(head: FittedHead) -> FittedHead:
             f"{MOST_SIMULATED}"
         )
     known = load("head")
-    picture, light = plain_skin(known)
     normals = vertex_normals(coarse.vertices, coarse.faces)
     nearest = nearest_on(coarse.vertices, normals, head.vertices, head.faces)
     corner = nearest.weights.argmax(axis=1)
@@ -45,10 +44,10 @@ def simplified_head(head: FittedHead) -> FittedHead:
         parts=with_eyelid_rims(coarse.parts, coarse.vertices, coarse.faces, coarse.eyes),
         uv=coarse.uv,
         face_uv=coarse.faces,
-        albedo=_drawn_anew(head, picture, TextureLayout(coarse.uv, coarse.faces)),
+        albedo=_drawn_anew(head, plain_picture(known), TextureLayout(coarse.uv, coarse.faces)),
         wrinkles=replace(known.wrinkles, across=head.wrinkles.across[nearest_vertex]),
         segments=known.segments,
-        ambient_occlusion=light,
+        ambient_occlusion=plain_light(known),
         file_vertices=head.file_vertices[nearest_vertex],
         simplified=None,
     )

@@ -6,7 +6,7 @@ import scipy
 
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.fitting.landmark_file import nearest_vertices
-from risorius.assets.fitting.painting import plain_skin, sampled
+from risorius.assets.fitting.painting import plain_picture, sampled
 from risorius.assets.meshes import Mesh
 from risorius.assets.pictures import MeshPictures
 from risorius.bench.subjects import decimated
@@ -40,7 +40,7 @@ def differences(head, fitted, numbers):
     true_uv = closest_points(points[is_near], true, head.faces).interpolate(head.uv)
     corner_uv = fitted.uv[fitted.face_uv[triangles[is_near]]]
     uv = np.einsum("nc,nci->ni", weights[is_near], corner_uv)
-    colours = sampled(plain_skin(head)[0], true_uv).astype(float)
+    colours = sampled(plain_picture(head), true_uv).astype(float)
     off = np.abs(sampled(fitted.albedo, uv) - colours).mean()
     return off, (sampled(fitted.segments, uv) != sampled(head.segments, true_uv)).mean()
 

@@ -10,7 +10,7 @@ import pytest
 
 from risorius import assets
 from risorius.assets import AssetError, loading
-from risorius.assets.fitting.painting import plain_skin
+from risorius.assets.fitting.painting import plain_picture
 from risorius.assets.loading import HEAD_FILE, load_head
 from tests.tracked import tracked
 
@@ -57,7 +57,7 @@ READS_FILE = {
     "head.png": lambda head: head.albedo,
     "head_fine_shape.npz": lambda head: head.fine_shape,
     "head_ambient_occlusion.npz": lambda head: head.ambient_occlusion,
-    "head_plain.npz": plain_skin,
+    "head_plain.npz": plain_picture,
     "head_finer.npz": lambda head: head.finer(1),
     "head_segments.png": lambda head: head.segments,
     "head_wrinkles.npz": lambda head: head.wrinkles,

@@ -2,6 +2,11 @@
 
 import numpy as np
 import pytest
+import scipy
+from pytest import approx
+
+from risorius.assets.fitting.painting import plain_picture
+from risorius.assets.model import Segment
 
 LARGEST_IMAGE_FILE = 1_250_000  # [bytes]
 
@@ -42,3 +47,21 @@ def test_picture_continues_outside_the_skin(head):
         for place in (inside, beyond)
     )
     assert np.abs(near - far).mean() < 12.0
+
+
+def test_hair_on_other_heads_has_hardly_any_strands(head):
+    """In the picture for other heads strands fade, and neither the hair's colour nor skin changes.
+
+    The strands follow the facets of the built-in scalp, so they were waves on MakeHuman's head.
+    """
+    plain = plain_picture(head).astype(float)
+    own = head.albedo.astype(float)
+    is_hair = scipy.ndimage.binary_erosion(head.segments == Segment.HAIR, iterations=30)
+    strands = [each - scipy.ndimage.gaussian_filter(each, (8, 8, 0)) for each in (plain, own)]
+    plain_contrast, own_contrast = (np.abs(each[is_hair]).mean() for each in strands)
+    assert plain_contrast < 0.4 * own_contrast
+    assert plain[is_hair].mean(axis=0) == approx(own[is_hair].mean(axis=0), abs=1.0)
+    face = np.isin(head.segments, [Segment.NOSE, Segment.TOP_LIP, Segment.BOTTOM_LIP])
+    is_low = np.arange(len(own)) > 0.55 * len(own)
+    is_same = (plain == own).all(axis=2)
+    assert is_same[face & is_low[:, None]].mean() > 0.9
