@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine
+from risorius.assets.coarse import CoarseHead
 from risorius.assets.identities import Person
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import cross_products
@@ -58,7 +59,7 @@ def refiner_for(
             options["scheme"] = refine.DetailScheme(finer)
         # A refiner by name has none of these, because the graphics card cannot draw them.
         if refinement.refiner is None and options.get("scheme") == CUBIC_SCHEME:
-            outlines, curves = _rims(scene)
+            outlines, curves = rims_of(scene)
             options["scheme"] = refine.CubicScheme(outlines, _backs_of_lids(scene), curves)
         if splits is not None:
             options.pop("criterion", None)
@@ -163,20 +164,35 @@ def _takes_own_schemes(refiner: str) -> bool:
     return any(each.name == "scheme" and each.kind == "word" for each in refine.parameters(refiner))
 
 
-def _rims(scene: Drawable) -> tuple[list[list[int]], list[list[int]]]:
-    """Return sharp and rounded rims of the built-in head and of persons; others have none.
+def rims_of(scene: Drawable) -> tuple[list[list[int]], list[list[int]]]:
+    """Return sharp and rounded rims of the built-in head, of persons, and of the coarse head.
 
     The sharp ones are rims of nostrils, outlines from below. The first vertex of such a rim is the
-    outermost; it lies in a fold, so its edges are not an outline. The rounded ones are two rows of
-    vertices along the free edge of each ear, outlines from the side and from the front.
+    outermost; it lies in a fold, so its edges are not an outline. The rounded ones are the lines at
+    which the lips part, the upper lip first, and two rows of vertices along the free edge of each
+    ear, outlines from the side and from the front. The coarse head has only the lips.
     """
-    if scene.face is None or not isinstance(scene.face.head, assets.Head | Person):
+    if scene.face is None or not isinstance(scene.face.head, assets.Head | Person | CoarseHead):
         return [], []
     rings = assets.load("head").rings
+    lips = _lip_lines(rings)
+    if isinstance(scene.face.head, CoarseHead):
+        numbers = {vertex: own for own, vertex in enumerate(scene.face.head.file_vertices.tolist())}
+        return [], [[numbers[vertex] for vertex in line if vertex in numbers] for line in lips]
     nostrils = [rings[f"nostril_{side}"].tolist() for side in SIDES]
     ears = [rings[f"ear_{row}_{side}"].tolist() for row in (1, 2) for side in SIDES]
     # The last vertices are those of the concha, which both rows share.
-    return [[*rim, rim[0]] for rim in nostrils], [row[:EAR_VERTEX_COUNT] for row in ears]
+    rounded = [*lips, *(row[:EAR_VERTEX_COUNT] for row in ears)]
+    return [[*rim, rim[0]] for rim in nostrils], rounded
+
+
+def _lip_lines(rings: Mapping[str, Integers32]) -> list[list[int]]:
+    """Return the vertices at which the upper and the lower lip part, from corner to corner."""
+    left, right = (rings[f"mouth_2_{side}"].tolist() for side in SIDES)
+    corner = len(left) // 2
+    upper = [*right[corner:0:-1], *left[: corner + 1]]
+    lower = [*left[corner:], *right[-2 : corner - 1 : -1]]
+    return [upper, lower]
 
 
 def _backs_of_lids(scene: Drawable) -> list[int]:
