@@ -31,6 +31,7 @@ HELLO_FILE = Path(__file__).parents[2] / "docs" / "hello.toml"
 SIZE = (760, 520)  # size of the window that tests share
 DEADLINE = 60.0  # [s] limit for an answer that an idle machine gives at once
 LEAST_FRAMES = 10  # frames shown before a deadline counts: one that loads a head may last longer
+NAP = 0.05  # [s] between frames while another process or thread works, which gets the core
 STEADY_FRAMES = 3  # equal frames, after which no panel moves
 
 
@@ -44,10 +45,11 @@ def settle(viewer: Viewer) -> None:
     glfw.get_window_pos(viewer.surface.handle)
 
     def is_steady() -> bool:
+        if viewer.file_drop.is_making:
+            time.sleep(NAP)
+            return False
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
-        return (
-            not viewer.file_drop.is_making and shown[-STEADY_FRAMES:] == STEADY_FRAMES * shown[-1:]
-        )
+        return shown[-STEADY_FRAMES:] == STEADY_FRAMES * shown[-1:]
 
     # While a face moves, panels may show older values.
     with mock.patch.object(viewer, "refresh", 0.0):
@@ -71,12 +73,22 @@ def press_keys(viewer: Viewer, *keys: str) -> None:
     xdotool(viewer, "key", *keys)
 
 
-def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
-    """Show at least one frame until a condition is true; return whether it was in time."""
+def until(
+    viewer: Viewer,
+    condition: Callable[[], object],
+    seconds: float = DEADLINE,
+    *,
+    nap: float = 0.0,
+) -> bool:
+    """Show at least one frame until a condition is true; return whether it was in time.
+
+    nap: pause after each frame [s].
+    """
     end = time.monotonic() + seconds
     shown = 0
     while shown < LEAST_FRAMES or time.monotonic() < end:
         viewer.frame()
+        time.sleep(nap)
         shown += 1
         if condition():
             return True

@@ -22,6 +22,7 @@ from risorius.render import Style
 
 from ..heads import user_head
 from .driving import (
+    NAP,
     NEEDS_A_SCREEN,
     clear_search,
     click,
@@ -64,7 +65,7 @@ def finish(viewer, *key):
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT, nap=NAP)
 
 
 def begin(viewer, name=""):
@@ -126,7 +127,7 @@ def test_pictures_are_written_into_a_folder_again(viewer, tmp_path):
     assert viewer.exporter.job is None
     press_keys(viewer, "Return")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT, nap=NAP)
     assert not viewer.messages.is_error
     assert (folder / "notes.txt").read_text() == "precious"
     assert pictures(folder).shape == (7, 120, 160, 3)
@@ -140,7 +141,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
     click(viewer, "Write: Motion: numpy arrays (.npz)")
     begin(viewer, "moved")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
-    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT, nap=NAP)
     assert "moved.npz" in viewer.messages.text
     assert not viewer.messages.is_error
     with np.load(tmp_path / "moved.npz") as arrays:
@@ -156,7 +157,7 @@ def test_the_window_responds_and_cancel_leaves_nothing(viewer, tmp_path, monkeyp
     press_keys(viewer, "F10")
     begin(viewer)
     job = viewer.exporter.job
-    assert until(viewer, lambda: job.task.share > 0.0, EXPORT_LIMIT)
+    assert until(viewer, lambda: job.task.share > 0.0, EXPORT_LIMIT, nap=NAP)
     press_keys(viewer, "1")
     assert viewer.session.is_solo("joy")
     press_keys(viewer, "ctrl+q")
@@ -240,8 +241,8 @@ def test_a_head_of_the_user_becomes_an_avatar(viewer, tmp_path):
     viewer.show_scene(before)
     job = viewer.exporter.job
     assert job.target.name == f"{mesh.stem}-avatar.glb"
-    assert until(viewer, lambda: 0.2 < job.task.share < 1.0, EXPORT_LIMIT)
-    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT)
+    assert until(viewer, lambda: 0.2 < job.task.share < 1.0, EXPORT_LIMIT, nap=NAP)
+    assert until(viewer, lambda: viewer.exporter.job is None, EXPORT_LIMIT, nap=NAP)
     assert not viewer.messages.is_error, viewer.messages.text
     found = document(job.target)
     head = next(each for each in found["meshes"] if each["name"] == "head")

@@ -12,7 +12,7 @@ from risorius.app.viewer.picture.stage import COARSEST_IDLE_LEVEL, DETAIL_LEVELS
 from risorius.app.viewer.session.physics import SLEEP_DELAY
 from risorius.app.viewer.window.schedule import Schedule
 
-from .driving import NEEDS_A_SCREEN, SIZE, moved, on_screen, press_keys, settle, until, xdotool
+from .driving import NAP, NEEDS_A_SCREEN, SIZE, moved, on_screen, press_keys, settle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 
@@ -86,10 +86,10 @@ def test_slow_frames_lower_the_detail_of_idle_life(viewer, monkeypatch):
     assert until(viewer, lambda: viewer.schedule.is_idling)
     with monkeypatch.context() as patch:
         patch.setattr(Schedule, "spent", 0.2)
-        assert until(viewer, lambda: viewer.surface.detail == coarse)
+        assert until(viewer, lambda: viewer.surface.detail == coarse, nap=NAP)
         assert viewer.schedule.is_idling
     monkeypatch.setattr(Schedule, "spent", 0.01)
-    assert until(viewer, lambda: viewer.surface.detail != coarse)
+    assert until(viewer, lambda: viewer.surface.detail != coarse, nap=NAP)
 
 
 def test_slow_frames_seldom_draw_panels(viewer, monkeypatch):

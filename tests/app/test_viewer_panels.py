@@ -19,6 +19,7 @@ from risorius.app.viewer.settings import SKIN_CHOICES, Display
 from risorius.assets.identities import NAMED_PERSONS
 
 from .driving import (
+    NAP,
     NEEDS_A_SCREEN,
     SIZE,
     clear_search,
@@ -181,7 +182,7 @@ def test_persons_are_chosen_by_their_pictures(viewer):
     portraits = viewer.context.portraits
     first = ("built-in", "coarse", "ada")
     # The process has low priority, so others run first.
-    assert until(viewer, lambda: all(map(portraits.picture_of, first)), 600.0)
+    assert until(viewer, lambda: all(map(portraits.picture_of, first)), 600.0, nap=NAP)
     settle(viewer)
     shot = viewer.surface.read()
     drawn = []
@@ -202,7 +203,7 @@ def test_pictures_of_persons_come_while_another_panel_is_open(viewer):
     settle(viewer)
     viewer.context.wanted_tab = "Face"
     portraits = viewer.context.portraits
-    assert until(viewer, lambda: portraits.picture_of("built-in"))
+    assert until(viewer, lambda: portraits.picture_of("built-in"), nap=NAP)
     assert until(viewer, lambda: viewer.schedule.is_idle and not portraits.has_news)
 
 
