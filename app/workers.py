@@ -25,8 +25,8 @@ from pathlib import Path
 from typing import Any
 
 from .errors import UserError, line_for, traceback_of
-from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
+from .tally import tally
 from .text import as_text, in_one_line
 
 Send = Callable[[object], None]  # sends a message to the process that started the work

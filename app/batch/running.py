@@ -16,8 +16,8 @@ import click
 
 from ..errors import UserError
 from ..files import written_atomically
-from ..motion import tally
 from ..stopping import cleaned_up_if_stopped
+from ..tally import tally
 from ..text import as_text, counted
 from ..workers import Send, WorkerPool
 from .listing import Job

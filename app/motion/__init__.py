@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from tqdm import tqdm
 
@@ -14,17 +13,9 @@ from ..control_names.limits import ControlValues
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
+from ..tally import tally
 from .life import Idle
 
-
-@dataclass
-class Tally:
-    """The number of frames that this process has played."""
-
-    frames: int = 0
-
-
-tally = Tally()
 SETTLING_TIME = 1.0  # [s] after which the face rests in a pose
 
 

@@ -12,9 +12,9 @@ from tqdm import tqdm
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import vertex_normals
 
-from ..motion import tally
 from ..scenes import FaceScene
 from ..stopping import cleaned_up_if_stopped
+from ..tally import tally
 from .poses import CRANIUM_BONE, FacePose, moved_part, rest_in, settings_of
 
 EYE_BONES = ("eye_left", "eye_right")  # names of bones
