@@ -52,7 +52,7 @@ class Growth:
 
 
 SHORT_HAIR = Growth(
-    5600, root=0.15, tip=1.12, least=2.0, longest=18.0, spread=0.32, half=0.1, lying=0.03
+    7000, root=0.15, tip=1.02, least=2.2, longest=18.0, spread=0.32, half=0.05, lying=0.03
 )
 TIED_HAIR = Growth(
     count=4400,
@@ -113,7 +113,7 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     ahead -= growth.lying * _dot(ahead, normal) * normal
     # On lying hair only few locks stand off.
     risen = alone[:, 1:2] * (1.0 - growth.lying * (1.0 - 6.0 * alone[:, 1:2] ** 4))
-    rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 0.6, 2.0) + risen)
+    rise = growth.spread * (0.4 * (1.0 - growth.lying) * waves(root, 1.7, 2.0) + risen)
     # Around a whorl, where layers stand up, locks lie in all directions.
     upright = _rise_around_whorl(_dot(ahead, normal), away)
     stray = 5.0 * upright * (chances[:, 8:11] - np.float32(0.5))
@@ -128,11 +128,12 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
     thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
-    thin *= 1.0 + 8.0 * upright
     # Both vertices of a tip have nearly one place, but two sides of the drawn pixel. With one
     # vertex a tip would be a row of dots.
     tapering = np.maximum(1.0 - t**2, 0.01)
-    half = (FINEST_RADIUS + (growth.half - FINEST_RADIUS) * thin)[:, None] * tapering
+    at_whorl = 0.4  # [mm]; locks are wide where layers show no strands
+    wider = growth.half - FINEST_RADIUS + at_whorl * upright
+    half = (FINEST_RADIUS + wider * thin)[:, None] * tapering
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)
     opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)

@@ -170,7 +170,9 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     below = chin[1] - points[:, 1:2] + jaw_slope * behind_chin
     # Necks measure 330 mm around in women and 398 mm in men (Gordon and others 2014, ANSUR II).
     narrowing = 0.17
-    fade_height = 30.0  # [mm] below the jaw over which narrowing begins
+    # [mm] below the jaw over which narrowing begins. It gives 322 to 338 mm around the larynx;
+    # within 30 mm, necks of women would have a corner behind the jaw.
+    fade_height = 60.0
     narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
     neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
     return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))

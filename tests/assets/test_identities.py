@@ -164,6 +164,15 @@ def test_womens_necks_are_narrower():
     assert shares == approx(0.83, abs=0.02)
 
 
+@pytest.mark.parametrize("number", [8, 66])
+def test_womens_necks_have_no_corner(number):
+    """From behind, the side of a woman's neck turns by less than 15 degrees at each vertex."""
+    behind_jaw = [176, 271, 195, 64]  # vertices from the ear down to the neck's end
+    down = np.diff(person_called(number).vertices[behind_jaw, :2], axis=0)
+    turns = np.diff(np.degrees(np.arctan2(down[:, 0], -down[:, 1])))
+    assert np.abs(turns).max() < 15.0
+
+
 def test_most_variance_needs_eight_components():
     """90 % of the variance of a hundred faces needs at least eight principal components.
 

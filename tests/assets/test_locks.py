@@ -186,3 +186,15 @@ def test_bobs_end_in_tips_and_not_in_teeth(number):
         assert off.min() > -8.0
         assert (off < 0.0).mean() > 0.4
         assert off.max() < 12.0
+
+
+@pytest.mark.parametrize("name", ["head", 40])
+def test_hairs_of_the_outline_are_fine(name):
+    """Except at the whorl, locks of short hair are 0.1 mm wide; they were 0.2 mm, like thorns."""
+    parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
+    hair, locks = (next(p for p in parts if p.name == each) for each in ("hair", "hair_locks"))
+    whorl = hair.vertices[np.argmin(hair.striation[:, 1])]
+    roots = locks.vertices[::VERTEX_COUNT]
+    is_away = np.linalg.norm(roots - whorl, axis=1) > 60.0
+    half = np.abs(locks.striation[::VERTEX_COUNT, 3])[is_away]
+    assert half.max() < 0.055
