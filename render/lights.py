@@ -1,7 +1,7 @@
 """Named lights: lamps from lights.toml, and environment maps."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -16,7 +16,21 @@ LAMPS: Mapping[str, Light] = MappingProxyType(
     }
 )
 """Lamps: name -> key light, fill light, rim light, and ambient light of a hemisphere."""
-LIGHTS: Mapping[str, Light] = MappingProxyType(
-    {**LAMPS, **{name: each.light() for name, each in LIGHT_MAPS.items()}}
-)
+
+
+class _Lights(Mapping[str, Light]):
+    """Lamps, and lights of the environment maps; the light of a map is computed when it is read."""
+
+    def __getitem__(self, name: str) -> Light:
+        lamp = LAMPS.get(name)
+        return LIGHT_MAPS[name].light() if lamp is None else lamp
+
+    def __iter__(self) -> Iterator[str]:
+        yield from (*LAMPS, *LIGHT_MAPS)
+
+    def __len__(self) -> int:
+        return len(LAMPS) + len(LIGHT_MAPS)
+
+
+LIGHTS: Mapping[str, Light] = _Lights()
 """All lights: name -> light."""

@@ -13,10 +13,10 @@ print("loaded:", *sys.modules)
 """
 
 
-def loaded_by(*words, cache):
+def loaded_by(*words, cache, program=MODULES_PROGRAM):
     """Packages that a command imports, the project's as two words; `cache`: compiled code."""
     result = subprocess.run(
-        [sys.executable, "-c", MODULES_PROGRAM, *words],
+        [sys.executable, "-c", program, *words],
         env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
         capture_output=True,
         text=True,
@@ -49,3 +49,20 @@ def test_doctor_simulates_nothing(tmp_path):
     loaded = loaded_by("doctor", cache=tmp_path)
     assert not loaded & {"risorius.sim", "risorius.assets", "pydantic", "trimesh"}
     assert not list(tmp_path.rglob("*.nbc"))
+
+
+def test_a_worker_starts_without_its_work(tmp_path):
+    """A worker imports what its work needs later; it loaded heads and numba to count frames."""
+    program = "import sys, risorius.app.workers; print('loaded:', *sys.modules)"
+    loaded = loaded_by(cache=tmp_path, program=program)
+    assert not loaded & {"numba", "numpy", "risorius.assets", "risorius.sim", "scipy"}
+
+
+def test_lights_of_maps_are_computed_when_they_are_read(tmp_path):
+    """The package that draws starts without the light of any map, and has the names of all."""
+    program = (
+        "from risorius.render import LIGHT_MAPS, LIGHTS\n"
+        "print('loaded:', *LIGHTS, *(name for each in LIGHT_MAPS.values() for name in vars(each)))"
+    )
+    assert loaded_by(cache=tmp_path, program=program) > {"street", "radiance"}
+    assert "_gathered" not in loaded_by(cache=tmp_path, program=program)
