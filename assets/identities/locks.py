@@ -127,13 +127,10 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     start = root + (growth.root - MEAN_PLACE) * way
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
-    thin = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chances[:, 6:7])
     # Both vertices of a tip have nearly one place, but two sides of the drawn pixel. With one
     # vertex a tip would be a row of dots.
     tapering = np.maximum(1.0 - t**2, 0.01)
-    at_whorl = 0.4  # [mm]; locks are wide where layers show no strands
-    wider = growth.half - FINEST_RADIUS + at_whorl * upright
-    half = (FINEST_RADIUS + wider * thin)[:, None] * tapering
+    half = _half_widths(growth, dense, upright, chances[:, 6:7])[:, None] * tapering
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)
     opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)
@@ -173,6 +170,17 @@ def _curvatures(hair: Part, corners: Integers32, ahead: Floats64) -> Floats64:
     turned = a * (normals[:, 1] - normals[:, 0]) + b * (normals[:, 2] - normals[:, 0])
     least_radius, greatest_radius = 25.0, 400.0  # [mm]
     return np.clip(_dot(turned, ahead), 1.0 / greatest_radius, 1.0 / least_radius)
+
+
+def _half_widths(growth: Growth, dense: Floats64, upright: Floats64, chance: Floats32) -> Floats64:
+    """Return half the widths of locks at their roots [mm]; all arrays are (n, 1).
+
+    dense: density of the layers. upright: as of `_rise_around_whorl`. chance: 0 to 1.
+    """
+    at_whorl = 0.4  # [mm]; locks are wide where layers show no strands
+    wider = growth.half - FINEST_RADIUS + at_whorl * upright
+    thick = np.clip((dense - 0.3) / 0.9, 0.0, 1.0) * (0.35 + 0.65 * chance)
+    return np.asarray(FINEST_RADIUS + wider * thick)
 
 
 def _rise_around_whorl(rise: Floats64, away: Floats64) -> Floats64:
