@@ -8,7 +8,8 @@ import numpy as np
 
 from .brows import Brows, drawn_brows
 from .eyes import USUAL_IRIS, Iris, drawn_iris
-from .hairline import Hairline, drawn_hairline
+from .hair import is_tied
+from .hairline import NO_RECESSION_AGE, Hairline, drawn_hairline
 from .population import ONLY_BROWN
 from .space import Identity, Sex
 
@@ -62,7 +63,9 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     fair_skin = 45.0  # ITA [deg] above which hair may be fair
     shaved_density = 0.12  # density of the beard in the texture of the built-in head
     brows = drawn_brows(is_man, years, random)
-    hairline = drawn_hairline(is_man, years, random)
+    # Men whose hair recedes have too little to tie it: their hairline remains that of young men.
+    receding_years = min(years, NO_RECESSION_AGE) if is_tied(identity.cut) else years
+    hairline = drawn_hairline(is_man, receding_years, random)
     iris = drawn_iris(years, fibres, random, angle=angle)
     blood_chance, pale_chance = np.clip(random.normal(size=2), -2.0, 2.0).tolist()
     fading = 1.0 - 0.006 * (years - 20.0)

@@ -85,6 +85,12 @@ HAIR_CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
 )
 
 
+def is_tied(name: str) -> bool:
+    """Whether a cut of `HAIR_CUTS`, given by name, is tied behind the head."""
+    cut = HAIR_CUTS[name]
+    return isinstance(cut, Cut) and cut.knot > 0.0
+
+
 class Scalp(NamedTuple):
     """The skin on which hair grows, as a triangle mesh.
 

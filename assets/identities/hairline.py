@@ -9,6 +9,8 @@ import numpy as np
 from ...geometry.arrays import Floats32
 from ..smooth import smooth_step
 
+NO_RECESSION_AGE = 25.0  # [years] up to which no hairline has receded
+
 
 @dataclass(frozen=True)
 class Hairline:
@@ -59,7 +61,7 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
         temples = -5.0
     else:
         temples = 6.0 + 6.0 * share
-    late = max(years - 25.0, 0.0) / 50.0
+    late = max(years - NO_RECESSION_AGE, 0.0) / 50.0
     receded = 22.0 * late * share**0.7 if is_man else 3.0 * late
     return Hairline(
         front=(0.5 if is_man else -2.0) + front + 0.6 * receded,

@@ -1,5 +1,6 @@
 """Skin of any tone and eyes of any colour, computed from one number."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -328,6 +329,20 @@ def test_lips_differ_by_person(head):
     assert np.abs(off[head.segments == Segment.NECK]).max() == 0
     red, green, _ = off[head.segments == Segment.TOP_LIP].mean(axis=0)
     assert red > 1.7 * green  # pink: a uniform lighter skin colour was wrong
+
+
+def test_men_who_tie_their_hair_have_kept_it():
+    """Hairlines of old men recede, unless their hair is tied: a tail hung from bald heads."""
+    old = sample_identity(4, sex=Sex.MAN, age=70.0)
+    places = {}
+    for cut in ("short", "tailed", "knotted"):
+        random = np.random.default_rng(5)
+        drawn = [features_of(replace(old, cut=cut), 20.0, random).hairline for _ in range(80)]
+        places[cut] = np.array([(line.front, line.temples, line.crown) for line in drawn])
+    assert places["short"][:, :2].sum(axis=1).max() > 30.0
+    for cut in ("tailed", "knotted"):
+        assert places[cut][:, :2].sum(axis=1).max() < 20.0
+        assert (places[cut][:, 2] == 0.0).all()
 
 
 def test_hair_turns_grey_as_in_the_survey():
