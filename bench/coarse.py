@@ -137,7 +137,7 @@ def _angles_and_areas(
 
 
 def search(
-    comparison: Comparison, start: CoarseLayout, on_flip: Callable[[str], None], rounds: int = 3
+    comparison: Comparison, start: CoarseLayout, on_flip: Callable[[str], None]
 ) -> CoarseLayout:
     """Flip edges of FREE_GROUPS that lower the angle by LEAST_GAIN; `on_flip` gets a line."""
     known = coarse_head()
@@ -145,7 +145,8 @@ def search(
     outward = vertex_normals(fine.vertices, fine.faces)[known.file_vertices]
     best = comparison.angles(start)["face"]
     present = start
-    for turn in range(rounds):
+    most_rounds = 3
+    for turn in range(most_rounds):
         before = best
         edges = trimesh.geometry.faces_to_edges(present.triangles)
         edges = np.unique(np.sort(edges, axis=1), axis=0)

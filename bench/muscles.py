@@ -30,7 +30,6 @@ from .report import Target, at_most, table
 from .subjects import Scans, settled_positions
 
 Mix = tuple[tuple[int, float], ...]
-Offset = tuple[float, float, float]
 
 FARTHEST = 20.0  # [mm] of skin from the nearest point of its region
 MOST_ELSEWHERE = 3.0  # [mm] mean motion of a region that a muscle must not move

@@ -123,7 +123,6 @@ PASS_CHANNELS = {
     "triangle": ("triangle.ID",),
     "splits": ("splits",),
 }
-NO_TRIANGLE = 0xFFFFFFFF  # no triangle, as an unsigned integer; -1 if it is read as signed
 FILE_ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 

@@ -9,7 +9,7 @@ from risorius.app.viewer.timeline.time_axis import TimeAxis
 
 
 def test_a_hidden_name_leaves_its_room_to_the_name_before():
-    """A name is not shortened for a next name that has no room itself."""
+    """A name is shortened only if the next name is shown."""
     axis = TimeAxis()
     axis.place(0.0, 100.0)
     axis.span = 100.0
