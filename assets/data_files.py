@@ -27,10 +27,13 @@ def _errors_named(path: Path) -> Iterator[None]:
         raise AssetError(f"{path} cannot be read ({error}); install risorius again") from error
 
 
-def read_arrays(path: Path) -> Arrays:
-    """Read an npz file: name -> read-only array; raises AssetError if it is missing or broken."""
+def read_arrays(path: Path, *names: str) -> Arrays:
+    """Read an npz file: name -> read-only array; raises AssetError if it is missing or broken.
+
+    names: the arrays to read; without names all of them, which takes longer.
+    """
     with _errors_named(path), np.load(path, allow_pickle=False) as file:
-        arrays = {name: file[name] for name in file.files}
+        arrays = {name: file[name] for name in names or file.files}
     for array in arrays.values():
         array.flags.writeable = False
     return arrays

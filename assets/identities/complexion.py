@@ -305,7 +305,7 @@ def _with_hair(
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:
     """Make standing hair for the built-in head, whose texture shows cropped hair there."""
-    scalp_map = read_arrays(head.file_beside("_tints.npz"))["scalp"]
+    scalp_map = read_arrays(head.file_beside("_tints.npz"), "scalp")["scalp"]
     behind = np.float32(0.01 * SCALP_SCALE) * scalp_map - SCALP_OFFSET
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
     colour = to_screen(LOCKS_LIGHTER * to_linear(np.array(SHIPPED_COMPLEXION.hair)))
