@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry.arrays import Floats64, Integers32
+from ...geometry.normals import points_on_triangles
 
 USUAL_WIDTH = 136.0  # [mm] between landmarks 0 and 16; other lengths hold for this width
 
@@ -27,7 +28,7 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     eyes = (landmarks[36] + landmarks[45]) / 2.0
     places = (vertices - eyes) / scale
     is_near = (np.abs(places[:, 1] + 20.0) < 60.0) & (places[:, 2] > -150.0)
-    points = _dense_points(places, faces[is_near[faces].all(axis=1)])
+    points = points_on_triangles(places, faces[is_near[faces].all(axis=1)])
     found = [_ear_place(points * (side, 1.0, 1.0)) for side in (-1.0, 1.0)]
     ears = [ear for ear in found if ear is not None]
     if not ears:
@@ -67,14 +68,6 @@ def with_human_opening(
     jaw["opening_deg"] *= gain
     jaw["opening_glide"] = [gain * component for component in jaw["opening_glide"]]
     return {**rig, "jaw": jaw}
-
-
-def _dense_points(points: Floats64, faces: Integers32) -> Floats64:
-    """Return points on triangles, (n, 3), so dense that every section contains some."""
-    sixths = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]  # barycentric coordinates
-    corners = points[faces]
-    spread = [np.einsum("fcx,c->fx", corners, np.array(place) / 6.0) for place in sixths]
-    return np.concatenate(spread)
 
 
 def _ear_place(points: Floats64) -> tuple[float, float] | None:

@@ -14,9 +14,9 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from ...geometry.arrays import Floats64, Integers32
+from ...geometry.arrays import Flags, Floats64, Integers32
 from ...geometry.directions import unit_vectors
-from ...geometry.normals import vertex_normals
+from ...geometry.normals import cross_products, points_on_triangles, vertex_normals
 from ..model import Eye, Head, Part
 from ..topology import boundary_loops, grid_faces
 from .eyeballs import ball_of_pieces, ball_of_socket
@@ -50,7 +50,8 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         # Skin that faces the ball is the wall of a socket, not a lid. A socket may be too narrow.
         is_lid = outward > -0.5
         is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
-        skin = np.vstack([target, fitted.vertices[is_lid]])
+        between = _points_between(fitted, is_lid, centre)
+        skin = np.vstack([target, fitted.vertices[is_lid], between])
         iris = scale * eye.iris_radius
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
         own = ball_of_pieces(fitted.pieces, centre, radius, target)
@@ -64,6 +65,22 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
             centre[2] += _forward_clearance(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, iris))
     return tuple(eyes)
+
+
+def _points_between(fitted: FittedSkin, is_lid: Flags, centre: Floats64) -> Floats64:
+    """Return points all over the long triangles on the outer sides of lids [mm], (n, 3).
+
+    A long flat triangle is deeper in its middle than at its corners, and the ball would pierce it.
+    is_lid: flags of the skin's vertices, (V,). centre: an estimate of the ball's centre, (3,).
+    """
+    faces = fitted.faces[is_lid[fitted.faces].all(axis=1)]
+    corners = fitted.vertices[faces]
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    long_edge = 4.0  # [mm]; the middle of such an edge is 0.2 mm deeper than its ends
+    is_long = lengths.max(axis=1, initial=0.0) > long_edge
+    away = corners.mean(axis=1) - centre
+    is_outer = (cross_products(fitted.vertices, faces) * away).sum(axis=1) > 0.0
+    return points_on_triangles(fitted.vertices, faces[is_long & is_outer])
 
 
 def _eye_width(points: Floats64) -> float:

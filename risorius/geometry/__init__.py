@@ -11,7 +11,7 @@ directions.py     unit vectors
 gradients.py      gradients of texture coordinates along a surface
 intersections.py  where a surface cuts through itself
 mesh_graph.py     connected pieces of a mesh, and paths along its edges
-normals.py        cross products of triangles, normals of vertices
+normals.py        cross products of triangles, normals of vertices, points on triangles
 polylines.py      lengths along polylines
 rays.py           where lines meet triangles
 read_only.py      views that cannot be written

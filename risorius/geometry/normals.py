@@ -1,4 +1,4 @@
-"""Cross products of triangles, and normals and areas of vertices, in double precision.
+"""Cross products of triangles, points on them, normals and areas of vertices, in double precision.
 
 Refiners compute the normals of every frame by another kernel, in single precision
 (refine/mesh/normals.py).
@@ -32,3 +32,11 @@ def vertex_areas(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64
     face_areas = np.linalg.norm(cross_products(vertices, faces), axis=1) / 2.0
     thirds = np.tile(face_areas / 3.0, 3)
     return np.asarray(np.bincount(faces.T.ravel(), thirds, len(vertices)), np.float64)
+
+
+def points_on_triangles(points: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
+    """Return 28 points all over each triangle (F, 3), on its corners and edges too, (28 F, 3)."""
+    sixths = [(i, j, 6 - i - j) for i in range(7) for j in range(7 - i)]  # barycentric coordinates
+    corners = points[faces]
+    spread = [np.einsum("fcx,c->fx", corners, np.array(place) / 6.0) for place in sixths]
+    return np.concatenate(spread)
