@@ -175,7 +175,7 @@ class Embedding:
 
     def _place(self, offsets: Floats64, moved: Floats64) -> None:
         places = self._surface.rows, self._numbers, self.weights
-        parallel_for(place_points, len(moved), *places, offsets, self._stretch, moved)
+        parallel_for(place_points, len(moved), *places, read_only(offsets), self._stretch, moved)
 
 
 def checked_vectors(name: str, given: npt.ArrayLike, count: int | None) -> Floats64:

@@ -22,6 +22,7 @@ import numpy as np
 
 from ...geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ...geometry.directions import unit_vectors
+from ...geometry.read_only import read_only
 from ...jit import njit
 from .connectivity import Connectivity
 
@@ -120,8 +121,9 @@ def corner_sectors(mesh: Connectivity, is_parting: Flags) -> tuple[Unsigned32, i
     """
     on_crease = np.zeros(mesh.vertex_count, dtype=np.bool_)
     on_crease[mesh.edges[is_parting]] = True
+    mesh = mesh.read_only()  # one type of arrays, so that the kernel is compiled once
     groups = _joined_corners(
-        mesh.faces, mesh.edges, mesh.edge_sides, mesh.more_sides, is_parting, on_crease
+        mesh.faces, mesh.edges, mesh.edge_sides, mesh.more_sides, read_only(is_parting), on_crease
     )
     # The first group of corners at a vertex is its sector v; others are numbered after all of them.
     vertices = mesh.faces.ravel().astype(np.int64)
