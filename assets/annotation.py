@@ -55,9 +55,14 @@ class Annotation:
         """Return the points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
         return self.inner.interpolate(positions)
 
-    def outline_paths(self, positions: Floats64) -> Floats64:
-        """Paths of the outline's search on a skin (V, 3), (2, LANE_COUNT, LANE_STEPS, 3)."""
-        return self.lanes.interpolate(positions).reshape(2, LANE_COUNT, LANE_STEPS, 3)
+    def outline_paths(self, positions: Floats64, normals: Floats64) -> Floats64:
+        """Paths of the outline's search on a smooth skin, (2, LANE_COUNT, LANE_STEPS, 3).
+
+        positions: vertices of the skin, (V, 3). normals: unit normals there, (V, 3). Paths on the
+        triangles themselves would lie inside the outline of the refined skin.
+        """
+        paths = self.lanes.interpolate_round(positions, normals)
+        return paths.reshape(2, LANE_COUNT, LANE_STEPS, 3)
 
 
 def annotation_of(head: Head | FittedHead) -> Annotation:

@@ -13,6 +13,7 @@ import numpy as np
 
 from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import vertex_normals
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
 
 from ..scenes import Face
@@ -82,7 +83,8 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     the eyes in the picture.
     """
     positions = face.positions
-    paths = face.annotation.outline_paths(positions)
+    normals = vertex_normals(positions, face.head.faces)
+    paths = face.annotation.outline_paths(positions, normals)
     corner_numbers = [36 - JAW_COUNT, 45 - JAW_COUNT]
     head_axes = face.bone_transforms()["cranium"][:3, :2]
     corner_heights = face.annotation.inner_points(positions)[corner_numbers] @ head_axes[:, 1]

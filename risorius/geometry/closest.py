@@ -44,6 +44,23 @@ class SurfacePoints:
         carried: Floats64 = np.einsum("nc,nc...->n...", self.weights, wide)
         return carried
 
+    def interpolate_round(self, vertices: Floats64, normals: Floats64) -> Floats64:
+        """Interpolate places on curved triangles: edges are arcs, normal to the vertex normals.
+
+        vertices: (V, 3). normals: unit normals, (V, 3). Returns shape (n, 3).
+        Source: Vlachos et al. 2001, "Curved PN triangles", with parabolas for cubics.
+        """
+        places = self.interpolate(vertices)
+        for first, second in ((0, 1), (1, 2), (2, 0)):
+            ends = self.corners[:, [first, second]]
+            along = np.diff(vertices[ends], axis=1)
+            up = normals[ends]
+            heights = (along * up).sum(axis=2, keepdims=True) * up
+            arc = 0.125 * (heights[:, 1] - heights[:, 0])  # from the middle of the straight edge
+            share = 4.0 * self.weights[:, first] * self.weights[:, second]
+            places += share[:, None] * arc
+        return places
+
 
 @dataclass(frozen=True, eq=False)
 class MeshSearch:

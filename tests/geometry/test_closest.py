@@ -61,3 +61,21 @@ def test_a_mesh_is_searched_as_often_as_wanted(generator):
         wanted = closest_points(points, vertices, faces, normals, 0.5)
         for name in ("distances", "triangles", "corners", "weights"):
             assert (getattr(found, name) == getattr(wanted, name)).all()
+
+
+def test_curved_triangles_are_round():
+    """On a ball of 128 triangles, curved ones lie ten times nearer to the sphere than flat ones."""
+    mesh = meshes.ball()
+    radius = norm(mesh.vertices, axis=1).mean()
+    generator = np.random.default_rng(3)
+    found = closest_points(generator.normal(size=(500, 3)), mesh.vertices, mesh.faces)
+    off = [
+        np.abs(norm(points, axis=1) / radius - 1.0).max()
+        for points in (
+            found.interpolate(mesh.vertices),
+            found.interpolate_round(mesh.vertices, mesh.vertices / radius),
+        )
+    ]
+    assert off[1] < 0.1 * off[0]
+    flat = found.interpolate_round(mesh.vertices, np.zeros_like(mesh.vertices))
+    np.testing.assert_allclose(flat, found.interpolate(mesh.vertices))
