@@ -57,6 +57,21 @@ def test_table_of_exported_files(script, tmp_path):
     assert path.stat().st_size / 1e6 == approx(size, rel=0.1)
 
 
+@pytest.mark.parametrize(("row", "options"), [("simulated", []), ("`--refined`", ["--refined"])])
+def test_table_of_refined_skins(row, options, tmp_path):
+    """The page on export has the sizes of files of the skin as it is simulated, and as it is drawn.
+
+    They grew unnoticed when the head got hair.
+    """
+    found = numbers_of(
+        DOCS / "export.md", rf"\| {row} \| \d+ \| ([\d.]+) MB \| [\d.]+ MB \| ([\d.]+) MB"
+    )
+    for size, name in zip(found, ("clip.glb", "clip.usdz"), strict=True):
+        path = tmp_path / name
+        succeeded("export", str(DOCS / "hello.toml"), *options, "-o", str(path), "--quiet")
+        assert path.stat().st_size / 1e6 == approx(size, rel=0.1)
+
+
 def test_size_of_a_sample(tmp_path):
     """The page on data sets has the mean size of a sample, with float passes and without."""
     plain, floats = numbers_of(
