@@ -43,7 +43,7 @@ class LightMap:
         rows, columns = self._coarse.shape[:2]
         radiance = self._coarse.reshape(-1, 3)
         away = directions(rows, columns, turn).reshape(-1, 3)
-        solid = _solid_angles_of_texels(rows, columns)
+        solid = _solid_angles(rows, columns)
         to_key, excess = _key_of(radiance, away, solid, self._gathered)
         key = solid @ excess / np.pi
         factors = [0.25, *[0.5] * 3, *[15 / 16] * 3, 5 / 64, 15 / 64]
@@ -90,7 +90,7 @@ class LightMap:
         rows, columns = self._coarse.shape[:2]
         radiance = self._coarse.reshape(-1, 3)
         away = directions(rows, columns).reshape(-1, 3)
-        lightness = _luminance(radiance) * _solid_angles_of_texels(rows, columns)
+        lightness = _luminance(radiance) * _solid_angles(rows, columns)
         square = np.maximum(away[::TRIED_STRIDE] @ away.T, 0.0) ** 2
         eighth = (square**2) ** 2
         # The 40th power of the cosine is a lobe of about 15 degrees. Repeated squaring is faster
@@ -119,14 +119,9 @@ def directions(rows: int, columns: int, turn: float = 0.0) -> Floats64:
 
 
 def _solid_angles(rows: int, columns: int) -> Floats64:
-    """Return the solid angle of a texel in each row [sr], (H,)."""
-    edges = np.sin(np.linspace(0.5 * np.pi, -0.5 * np.pi, rows + 1))
-    return np.asarray(-np.diff(edges) * 2.0 * np.pi / columns)
-
-
-def _solid_angles_of_texels(rows: int, columns: int) -> Floats64:
     """Return the solid angle of each texel [sr], (rows * columns,)."""
-    return np.repeat(_solid_angles(rows, columns), columns)
+    edges = np.sin(np.linspace(0.5 * np.pi, -0.5 * np.pi, rows + 1))
+    return np.repeat(-np.diff(edges) * 2.0 * np.pi / columns, columns)
 
 
 def _key_of(

@@ -148,19 +148,20 @@ def _with_even_hair(known: Head, picture: Image) -> Image:
 
     The strands follow the facets of the built-in scalp, so they are wavy on other heads.
     """
-    size = 12.0  # [texels] of the Gaussian, wider than a strand
+    import PIL.Image  # here, because most heads do not need it
+    import PIL.ImageFilter
+
     kept = 0.25  # fraction of the contrast
-    rows = slice(0, np.flatnonzero((known.segments == Segment.HAIR).any(axis=1))[-1] + 1)
-    is_hair = (known.segments[rows] == Segment.HAIR).astype(np.float32)
-    share = scipy.ndimage.gaussian_filter(is_hair, size)
+    softened = PIL.ImageFilter.GaussianBlur(12.0)  # [texels], wider than a strand
+    is_hair = known.segments == Segment.HAIR
+    rows = slice(0, np.flatnonzero(is_hair.any(axis=1))[-1] + 1)
+    mask = PIL.Image.fromarray(255 * is_hair[rows].astype(np.uint8))
+    share = np.asarray(mask.filter(softened)) / 255.0
     near = picture[rows].astype(np.float32)
-    mean = scipy.ndimage.gaussian_filter(near, (size, size, 0.0))
-    hairy = scipy.ndimage.gaussian_filter(near * is_hair[:, :, None], (size, size, 0.0))
-    inside = (is_hair * smooth_step(0.5, 1.0, share))[:, :, None]
-    smooth = inside * hairy / np.maximum(share, 0.1)[:, :, None] + (1.0 - inside) * mean
+    mean = np.asarray(PIL.Image.fromarray(picture[rows]).filter(softened))
     strength = (1.0 - kept) * smooth_step(0.05, 0.4, share)[:, :, None]
     even = picture.copy()
-    even[rows] = (near + strength * (smooth - near)).round().clip(0, 255)
+    even[rows] = (near + strength * (mean - near)).round()
     return even
 
 
