@@ -13,6 +13,10 @@ the log reports this. With NUMBA_DISABLE_JIT=1 all kernels run as Python, slowly
 coverage. Fast-math is off unless a kernel needs it, so results do not depend on the
 vectorisation of a loop.
 
+Processes that start together share the work: one compiles a kernel, and the others wait for it and
+load its code. For this a process locks one byte of the file `compiling.lock` in the folder, at a
+place that the kernel's name determines. Windows has no such locks, so each process compiles there.
+
 This file does not depend on the code that it compiles. A copy of `refine/` also needs this file.
 """
 
@@ -26,6 +30,7 @@ import sys
 import tempfile
 import threading
 import time
+import zlib
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from pathlib import Path
@@ -33,6 +38,10 @@ from typing import Any, TypeVar, overload
 
 import numba
 from numba.core import event
+from numba.core.caching import FunctionCache
+
+if sys.platform != "win32":
+    import fcntl
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -76,7 +85,9 @@ def njit(function: Any = None, /, *, lanes: bool = False, fastmath: Collection[s
     with _lock:
         before, _numbas.CACHE_DIR = _numbas.CACHE_DIR, str(folder)
         try:
-            return numba.njit(function, cache=True, **KERNEL_OPTIONS, **options)
+            kernel = numba.njit(function, **KERNEL_OPTIONS, **options)
+            kernel._cache = _SharedCache(function, folder)
+            return kernel
         finally:
             _numbas.CACHE_DIR = before
 
@@ -130,6 +141,66 @@ def _remove_old(above: Path) -> None:
         for folder in sorted(used, key=used.__getitem__, reverse=True)[most_folders:]:
             if used[folder] < time.time() - unused_seconds:
                 shutil.rmtree(folder, ignore_errors=True)
+
+
+class _SharedCache(FunctionCache):
+    """Numba's store of a kernel's machine code, with a lock between loading and saving.
+
+    Numba loads code, compiles it if the store has none, and saves it. The lock is held during the
+    last two steps. It belongs to the process, which can take it twice, and ends with the process.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        super().__init__(function)
+        self._folder = folder
+        name = f"{function.__module__}.{function.__qualname__}"
+        self._place = zlib.crc32(name.encode())
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """Load code for a signature; if another process compiles the kernel, wait for it."""
+        found = super().load_overload(signature, target)
+        if found is None and self._is_locked():
+            found = super().load_overload(signature, target)
+            if found is not None:
+                self._unlock()
+        return found
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Save the code of a signature, for which other processes may wait."""
+        try:
+            super().save_overload(signature, compiled)
+        finally:
+            self._unlock()
+
+    def _is_locked(self) -> bool:
+        """Lock the kernel; return whether this succeeded."""
+        if sys.platform == "win32":
+            return False
+        # A process that is paused while it compiles must not stop others for ever.
+        most_seconds = 120.0
+        deadline = time.monotonic() + most_seconds
+        while time.monotonic() < deadline:
+            try:
+                lock = fcntl.LOCK_EX | fcntl.LOCK_NB
+                fcntl.lockf(_lock_file(self._folder), lock, 1, self._place)
+                return True
+            except (BlockingIOError, PermissionError):
+                time.sleep(0.02)
+            except OSError:  # a file system without locks
+                return False
+        return False
+
+    def _unlock(self) -> None:
+        """Unlock the kernel, also if it is not locked."""
+        if sys.platform != "win32":
+            with suppress(OSError):
+                fcntl.lockf(_lock_file(self._folder), fcntl.LOCK_UN, 1, self._place)
+
+
+@functools.cache
+def _lock_file(folder: Path) -> int:
+    """Open the file of locks; it stays open, because closing it would release every lock."""
+    return os.open(folder / "compiling.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
 
 
 class _Compilation(event.Listener):

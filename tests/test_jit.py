@@ -31,6 +31,17 @@ logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stdout)
 from risorius.refine.kernels import scale
 print(scale(2.0), scale(3.0))
 """
+MEETING_PROGRAM = """
+import os, pathlib, time
+import numba.core.event as event
+import risorius.jit
+class Slowness(event.Listener):
+    on_start = on_end = lambda *_: time.sleep(0.3)
+event.register("numba:compile", Slowness())
+pathlib.Path(f"here-{os.getpid()}").touch()
+while len([*pathlib.Path(".").glob("here-*")]) < 2:
+    time.sleep(0.001)
+"""
 COMPILED_LINES = [f"compiling risorius.refine.{name}" for name in ("kernels.scale", "other.factor")]
 PRINTED_RESULT = "4.0 6.0"
 
@@ -127,14 +138,25 @@ def test_runs_as_python(package):
 
 
 def test_processes_that_start_together(package):
-    """Processes that start together without cached code all succeed.
+    """Processes that start together without cached code compile each kernel once in all.
 
     The next one compiles nothing.
     """
     with ThreadPoolExecutor(2) as threads:
-        runs = list(threads.map(lambda _: package.run(), range(2)))
+        program = MEETING_PROGRAM + KERNEL_PROGRAM
+        runs = list(threads.map(lambda _: package.run(program), range(2)))
     assert [lines[-1] for lines in runs] == [PRINTED_RESULT] * 2
+    assert sorted(line for lines in runs for line in lines[:-1]) == COMPILED_LINES
     assert package.run() == [PRINTED_RESULT]
+
+
+def test_a_process_that_dies_while_it_compiles_stops_no_other(package):
+    """Its lock ends with it, so the next process compiles at once."""
+    dying = (
+        "import os, risorius.jit as jit; jit._SharedCache.save_overload = lambda *_: os._exit(0)"
+    )
+    assert package.run(f"{dying}\n{KERNEL_PROGRAM}") == COMPILED_LINES
+    assert package.run() == [*COMPILED_LINES, PRINTED_RESULT]
 
 
 def test_functions_without_a_module_compile():

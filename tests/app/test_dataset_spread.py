@@ -25,9 +25,11 @@ from risorius.app.dataset.sampling import draw
 from risorius.app.dataset.sharing import SampleBatch, make_on_cluster, make_samples
 from risorius.app.dataset.table import load_table
 from risorius.app.errors import UserError
+from risorius.app.workers import run_all
 from risorius.assets.identities import EVERYBODY, colours_of_number, person_called, sample_identity
 from risorius.faces import UNITS, Faces
 
+from .compiling_work import make_samples_and_name_kernels
 from .test_dataset import content
 
 SAMPLE_COUNT = int(os.environ.get("SAMPLES", "5"))
@@ -193,6 +195,19 @@ def test_a_process_elsewhere_hands_samples_back(loose, tmp_path):
     folder.take_sample(1, sample.files)
     assert folder.has(1)
     assert folder.files_of(1)[0].read_bytes() == (loose / "000001.json").read_bytes()
+
+
+@pytest.mark.slow
+def test_processes_compile_each_kernel_once(tmp_path, monkeypatch):
+    """Two processes that find no compiled code need as much work as one: they share it."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    request = request_for(tmp_path / "nowhere")
+    batches = [SampleBatch(request, (number,), "seen-0") for number in range(2)]
+    messages = [*run_all(make_samples_and_name_kernels, batches)]
+    kernels = [message for message in messages if isinstance(message, str)]
+    assert len(messages) == len(kernels) + len(batches)
+    stored = [*tmp_path.rglob("*.nbc")]  # a file for each kernel and signature
+    assert len(kernels) == len(stored) > 100
 
 
 def test_another_release_is_refused(tmp_path):
