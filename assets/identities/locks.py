@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from ..smooth import Points, smooth_step
 MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATION_COUNT = 3  # points along a lock: root, middle and tip
 VERTEX_COUNT = 2 * STATION_COUNT  # vertices of a lock
+# Taper of tips. Both vertices of a tip have nearly one place, but two sides of the drawn pixel.
+# With one vertex a tip would be a row of dots.
+LEAST_TAPER = 0.01
 FINEST_RADIUS = 0.05  # [mm]; radius with which a single hair is drawn
 
 
@@ -78,13 +82,13 @@ FALLING_HAIR = Growth(
     fringe=-1.0,
 )
 TIP_GROWTH = Growth(
-    count=1600,
+    count=800,
     root=0.6,
-    tip=2.3,
+    tip=3.0,
     least=3.6,
-    longest=6.0,
+    longest=9.0,
     spread=0.1,
-    half=0.3,
+    half=0.15,
     lying=1.0,
     radius=400.0,
     fringe=1.0,
@@ -127,30 +131,52 @@ def locks_on(hair: Part, growth: Growth) -> Part:
     start = root + (growth.root - MEAN_PLACE) * way
     midpoints = start[:, None] + t * (length * ahead)[:, None] - t * t * bend[:, None]
     along = unit_vectors((length * ahead)[:, None] - 2.0 * t * bend[:, None])
-    # Both vertices of a tip have nearly one place, but two sides of the drawn pixel. With one
-    # vertex a tip would be a row of dots.
-    tapering = np.maximum(1.0 - t**2, 0.01)
+    tapering = np.maximum(1.0 - t**2, LEAST_TAPER)
     half = _half_widths(growth, dense, upright, chances[:, 6:7])[:, None] * tapering
     tone = 1.0 + (0.3 + 1.2 * upright) * (chances[:, 7:8] - 0.5)
     light = tone[:, None] * (0.84 + 0.26 * t)
     opacity = np.clip(t / 0.3, 0.15, 1.0) * np.ones_like(half)
-    sides = np.cross(normal[:, None], along) * half
+    ribbons = Ribbons(midpoints, along, normal, half, light * colour[:, None], opacity)
+    return ribbon_part(hair, ribbons, growth.half)
+
+
+class Ribbons(NamedTuple):
+    """n locks with m stations each, from root to tip.
+
+    midpoints: places of stations [mm], (n, m, 3). along: unit directions there, (n, m, 3).
+    normals: of the hair below each lock, (n, 3). halves: half the widths at stations [mm],
+    (n, m, 1). colours: sRGB, (n, m, 3). opacity: 0 to 1, (n, m, 1).
+    """
+
+    midpoints: Floats64
+    along: Floats64
+    normals: Floats64
+    halves: Floats64
+    colours: Floats64
+    opacity: Floats64
+
+
+def ribbon_part(hair: Part, ribbons: Ribbons, radius: float) -> Part:
+    """Make the part of locks on layers of hair; radius: half the width of the widest lock [mm]."""
+    midpoints, along, normals, halves, colours, opacity = ribbons
+    count, station_count = midpoints.shape[:2]
+    sides = np.cross(normals[:, None], along) * halves
 
     def rows(first: Floats32 | Floats64, second: Floats32 | Floats64 | None = None) -> Floats32:
         """Return values of both sides of stations as rows of vertices."""
         both = np.stack([first, first if second is None else second], axis=2)
-        return np.ascontiguousarray(both.reshape(len(both) * VERTEX_COUNT, -1), np.float32)
+        return np.ascontiguousarray(both.reshape(2 * count * station_count, -1), np.float32)
 
-    every = np.broadcast_to(normal[:, None], midpoints.shape)
+    every = np.broadcast_to(normals[:, None], midpoints.shape)
     return replace(
         hair,
         name=hair.name + "_locks",
         vertices=rows(midpoints + sides, midpoints - sides),
         normals=rows(every),
-        faces=_ribbons(growth.count),
-        colours=rows(np.clip(light * colour[:, None], 0.0, 1.0)),
-        strand_radius=growth.half,
-        striation=np.hstack([rows(along), rows(half, -half), rows(opacity)]),
+        faces=_ribbon_faces(count, station_count),
+        colours=rows(np.clip(colours, 0.0, 1.0)),
+        strand_radius=radius,
+        striation=np.hstack([rows(along), rows(halves, -halves), rows(opacity)]),
     )
 
 
@@ -236,12 +262,12 @@ def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
 
 
 @lru_cache(maxsize=4)
-def _ribbons(count: int) -> Integers32:
-    """Return the faces of locks, counter-clockwise from outside, (count * 4, 3)."""
+def _ribbon_faces(count: int, station_count: int) -> Integers32:
+    """Return the faces of locks, counter-clockwise from outside, (n, 3)."""
     one = []
-    for k in range(0, VERTEX_COUNT - 2, 2):
+    for k in range(0, 2 * station_count - 2, 2):
         one += [(k, k + 1, k + 2), (k + 2, k + 1, k + 3)]
-    firsts = VERTEX_COUNT * np.arange(count, dtype=np.int32)
+    firsts = 2 * station_count * np.arange(count, dtype=np.int32)
     found = (firsts[:, None, None] + np.array(one, np.int32)).reshape(-1, 3)
     found.flags.writeable = False
     return found

@@ -22,10 +22,11 @@ from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR_NAME, Cut, Fall, Scalp, from_within
 from .locks import FALLING_HAIR, INNER_TIPS, MEAN_PLACE, TIP_GROWTH, WOUND_HAIR, locks_on
+from .single_hairs import locks_along
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
 HAIR_EDGE_ANGLE, ROUNDING_ANGLE = np.radians([62.0, 50.0])
-THINNING_LENGTH = 4.0  # [mm] over which the tips of cut hair thin out
+THINNING_LENGTH = 6.0  # [mm] over which the tips of cut hair thin out
 FULL_DENSITY = 2.0  # density at which all layers are full
 HAIR_HEIGHT = 9.0  # [mm] that hair stands off the head
 LAYER_SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
@@ -93,7 +94,7 @@ def falling_hair(
     dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
     tones = _lock_lightness(across) * colour
     hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, tones, _slide_of(along))
-    return (*_with_tips(hair, bent.shape[1]), locks_on(hair, FALLING_HAIR))
+    return (*_with_tips(hair, bent.shape[1]), locks_along(hair, across, along))
 
 
 def _lock_heights(across: Floats64) -> Floats64:

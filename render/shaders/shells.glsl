@@ -75,7 +75,7 @@ vec2 reach(vec2 number) {
 
 void main() {
     // Strands and locks finer than a pixel fade into their mean.
-    vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
+    vec2 share = clamp(1.5 - 1.25 * fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     // Seen from the side, single tips would look like dashed lines.
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
     float outline = outline_place(layers) + SHARP;

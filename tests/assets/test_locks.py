@@ -12,6 +12,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets import Segment, load
 from risorius.assets.identities import built_in_hair, person_called
 from risorius.assets.identities.locks import SHORT_HAIR, TIED_HAIR, VERTEX_COUNT, locks_on
+from risorius.assets.identities.single_hairs import LOCK_COUNT
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import cross_products
 from risorius.render import Style
@@ -198,3 +199,25 @@ def test_hairs_of_the_outline_are_fine(name):
     is_away = np.linalg.norm(roots - whorl, axis=1) > 60.0
     half = np.abs(locks.striation[::VERTEX_COUNT, 3])[is_away]
     assert half.max() < 0.055
+
+
+@pytest.mark.parametrize("number", [12, 28])
+def test_single_hairs_cross_the_edges_of_bobs(number):
+    """Thin locks follow the strands, end at many heights, and some lie in front of the layers.
+
+    Edges of bobs were knife-edges: all strands ended within 3 mm, and none left the layers' edge.
+    """
+    parts = {part.name: part for part in person_called(number).parts}
+    layers, locks = parts["hair"].vertices.reshape(51, -1, 3), parts["hair_locks"]
+    assert np.isfinite(locks.vertices).all()
+    ribbons = locks.vertices.reshape(LOCK_COUNT, -1, 3)
+    lengths = np.linalg.norm(np.diff(ribbons[:, ::2], axis=1), axis=2).sum(axis=1)
+    assert 20.0 < lengths.min() < lengths.max() < 60.0
+    tips = ribbons[:, -1]
+    off = tips[:, 1] - layers[cKDTree(layers[:, -1]).query(tips)[1], -1, 1]
+    is_hem = off < 12.0
+    assert is_hem.mean() > 0.2
+    assert off[is_hem].std() > 3.0
+    edge = layers[[0, -1]].reshape(-1, 3)
+    ahead = ribbons - edge[cKDTree(edge).query(ribbons)[1]]
+    assert (ahead[..., 2] > 1.0).any(axis=1).sum() > 10
