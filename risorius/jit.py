@@ -45,8 +45,15 @@ if sys.platform != "win32":
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-KERNEL_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-"""Options of all kernels: they release the GIL, and 1 / 0 is infinite, as in numpy."""
+KERNEL_OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,
+}
+"""Options of all kernels: they release the GIL, and 1 / 0 is infinite, as in numpy.
+
+C never calls a kernel, so numba need not compile a wrapper for it, a tenth of its work.
+"""
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import map_coordinates
+import scipy
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64
 from ...geometry.closest import closest_points
@@ -325,7 +325,8 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     def behind_hairline(uv: Points) -> Floats64:
         """Return distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
         at = [(1.0 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5]
-        return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
+        sampled = scipy.ndimage.map_coordinates(behind, at, order=1, mode="nearest")
+        return np.asarray(sampled, np.float64)
 
     has_hair = (behind_hairline(uv) > 0.0)[faces].any(axis=1)
     used, number = np.unique(faces[has_hair], return_inverse=True)

@@ -137,19 +137,26 @@ def _edge_weights(along: Floats64, derivative: int = 0) -> Floats64:
     """Return weights of the edge's vertices along its curve, or their derivatives.
 
     The shape is (n, EDGE_VERTEX_COUNT).
+    """
+    places = along * (EDGE_VERTEX_COUNT - 1.0)
+    scale = (EDGE_VERTEX_COUNT - 1.0) ** derivative
+    columns = [curve(places, nu=derivative) for curve in _weight_curves()]
+    return scale * np.column_stack(columns)
+
+
+@lru_cache(maxsize=1)
+def _weight_curves() -> list[scipy.interpolate.BSpline]:
+    """Return the weight of each vertex of an edge along its curve.
 
     The curve is a smoothing spline that passes near the vertices. A curve through them would have
     corners, and so would the crease parallel to it.
     """
     bend_cost = 1.0  # weight of squared second derivatives, relative to squared distances
     numbers = np.arange(float(EDGE_VERTEX_COUNT))
-    columns = [
+    return [
         scipy.interpolate.make_smoothing_spline(numbers, each, lam=bend_cost)
         for each in np.eye(EDGE_VERTEX_COUNT)
     ]
-    places = along * (EDGE_VERTEX_COUNT - 1.0)
-    scale = (EDGE_VERTEX_COUNT - 1.0) ** derivative
-    return scale * np.column_stack([each(places, nu=derivative) for each in columns])
 
 
 def _nearest(places: Floats64, points: Floats64) -> Floats64:

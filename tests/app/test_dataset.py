@@ -24,6 +24,7 @@ from risorius.app.dataset.table import load_table
 from risorius.assets import Segment
 
 from .command_line import refusal, risorius
+from .without_workers import in_this_process
 
 SAMPLE_COUNT = 4
 SEED = 11
@@ -37,6 +38,12 @@ DATASET_OPTIONS = (
 
 
 def run(folder, *options, count=SAMPLE_COUNT):
+    """Run the command in this process, without workers."""
+    with in_this_process():
+        return run_with_workers(folder, *options, count=count)
+
+
+def run_with_workers(folder, *options, count=SAMPLE_COUNT):
     """Run the command in this process; its workers are other processes."""
     return risorius("dataset", "--count", count, "-o", folder, *DATASET_OPTIONS, *options)
 
@@ -50,7 +57,7 @@ def content(folder):
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set made by two processes."""
     folder = tmp_path_factory.mktemp("set") / "made"
-    result = run(folder, "--jobs", "2")
+    result = run_with_workers(folder, "--jobs", "2")
     assert result.exit_code == 0, result.output
     assert result.output.startswith(f"{folder}: {SAMPLE_COUNT} samples, {SAMPLE_COUNT} of them new")
     return folder

@@ -31,6 +31,7 @@ from risorius.faces import UNITS, Faces
 
 from .compiling_work import make_samples_and_name_kernels
 from .test_dataset import content
+from .without_workers import in_this_process
 
 SAMPLE_COUNT = int(os.environ.get("SAMPLES", "5"))
 SAMPLES_PER_SHARD = 2
@@ -46,7 +47,8 @@ def request_for(folder: Path, shards: int | None = None) -> SetRequest:
 def loose(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set of single files."""
     folder = tmp_path_factory.mktemp("loose") / "set"
-    make_set(request_for(folder), SAMPLE_COUNT, progress=False)
+    with in_this_process():
+        make_set(request_for(folder), SAMPLE_COUNT, progress=False)
     return folder
 
 
@@ -158,9 +160,10 @@ def test_a_damaged_shard_is_made_anew(packed, tmp_path, end):
     if end == "no tar":
         shard.unlink()
     (folder / "000002.png").write_bytes(b"left by a process that was killed")
-    made = make_set(
-        request_for(folder, SAMPLES_PER_SHARD), SAMPLE_COUNT, resume=True, progress=False
-    )
+    with in_this_process():
+        made = make_set(
+            request_for(folder, SAMPLES_PER_SHARD), SAMPLE_COUNT, resume=True, progress=False
+        )
     assert made.new == {"cut": 1, "empty": 2, "no listing": 0, "no tar": 2}[end]
     assert content(folder) == content(packed)
 
