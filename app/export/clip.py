@@ -102,7 +102,7 @@ def record(
     most = round(end * frames_per_second) + 1
     positions = np.empty((most, *scene.positions.shape), np.float32)
     bones: list[Mapping[str, Floats64]] = []
-    shapes: list[list[Floats32]] = [[] for _ in scene.parts]
+    shapes: list[list[Floats32]] = [[] for _ in scene.exported_parts]
     moved = None if scene.face is None else scene.face.simulation.controls
     controls = list[Floats64]()
     activations = list[Floats64]()
@@ -111,7 +111,7 @@ def record(
             continue
         positions[len(bones)] = scene.positions
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
-        for kept, part in zip(shapes, scene.parts, strict=True):
+        for kept, part in zip(shapes, scene.exported_parts, strict=True):
             kept.append(part.vertices)
         controls.append(scene.values.numbers)
         activations.append(np.array([] if moved is None else moved.wanted))
@@ -124,7 +124,8 @@ def record(
         uv=scene.skin.uv,
         face_uv=scene.skin.face_uv,
     )
-    parts = [_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True)]
+    both = zip(scene.exported_parts, shapes, strict=True)
+    parts = [_surface_of(*each, matrices) for each in both]
     return Clip(
         scene=scene,
         script=script,

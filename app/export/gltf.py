@@ -95,7 +95,7 @@ def moving_pieces(clip: Clip, request: ExportRequest) -> Moving:
         weights = shape_curves(clip.scene, clip.times, clip.activations, clip.controls)
     pieces = []
     off: dict[str, Floats64] = {}
-    for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
+    for surface, part in zip(clip.surfaces, [None, *clip.scene.exported_parts], strict=True):
         if surface.shapes is None:
             pieces.append(_rigid_piece(surface, part))
             continue

@@ -97,7 +97,7 @@ def bodies_of_parts(
     """
     scene.reset()
     found = []
-    for part in scene.parts:
+    for part in scene.exported_parts:
         if wanted(part):
             is_node = part.bone == "neck" or (part.bone in EYE_BONES and eyes_are_nodes)
             bone = part.bone if is_node else CRANIUM_BONE

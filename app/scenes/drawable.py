@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets
+from risorius.assets.identities import BEARD_NAME
 from risorius.geometry.arrays import Floats32, Integers32
 
 from .bent_part import HeadPart
@@ -101,6 +102,14 @@ class Drawable:
     def parts(self) -> tuple[HeadPart, ...]:
         """The parts that move with bones or the skin, in their current shape: eyes, teeth, ..."""
         return ()
+
+    @property
+    def exported_parts(self) -> tuple[HeadPart, ...]:
+        """The parts in files: no hairs of beards, which the texture shows, too.
+
+        A thousand hairs that move with the skin would double a file of morph targets.
+        """
+        return tuple(part for part in self.parts if part.name != BEARD_NAME)
 
     def rims(self, point_count: int) -> Mapping[str, Rim]:
         """Return the current openings of the skin, by the names in `openings.opening_before`.

@@ -7,6 +7,7 @@ A person can replace the built-in head everywhere: `sim.create(person)`, `FaceSc
 """
 
 from ..model import GLASSES_NAME, MASK_NAME
+from .beards import BEARD_NAME
 from .complexion import built_in_hair, coloured, recoloured
 from .features import Features, features_of
 from .hair import HAIR_NAME
@@ -28,6 +29,7 @@ from .space import Identity, Sex, sample_identity
 from .wear import GLASSES_FRAMES, wearing
 
 __all__ = [
+    "BEARD_NAME",
     "COLLAR_BUILDERS",
     "DARKEST_TONE",
     "EVERYBODY",

@@ -187,11 +187,18 @@ def stubble(size: int) -> Floats32:
     # A hair is finer than a texel, so it covers a part of one; hairs are short, and many overlap.
     hairs = scipy.ndimage.gaussian_filter(random, (0.9, 0.38))
     hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 1.2, 0.0, 3.0) / 5.5
+    return np.asarray(hairs * front_of_neck(size), dtype=np.float32)
+
+
+def front_of_neck(size: int) -> Floats32:
+    """Return where beards grow on the front half of the neck, 0 to 1, (size, size).
+
+    The map of the beard continues around the neck.
+    """
     across = np.abs(np.linspace(-0.5, 0.5, size))
     down = np.linspace(0.0, 1.0, size)[:, None]
-    # Stubble ends on the neck, although the map of the beard continues around it.
     front = (1.0 - smooth_step(0.26, 0.3, across)) * (1.0 - smooth_step(0.84, 0.93, down))
-    return np.asarray(hairs * front, dtype=np.float32)
+    return np.asarray(front, np.float32)
 
 
 @lru_cache(maxsize=1)

@@ -24,19 +24,21 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from ...geometry.arrays import Floats32, Floats64, Integers64
+from ...geometry.arrays import Floats32, Floats64
 from ...geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
-from ..model import FineShape, Head, Part, Segment, Wrinkles
+from ..model import FineShape, Head, Part, Wrinkles
 from ..oil import MAP_SIZE
 from ..pigments import BLOOD, SHAVED_HAIR, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
 from ..smooth import shrunk
-from .brows import painted, shrunk_stubble, soft_beard
+from .beards import beard_of
+from .brows import front_of_neck, painted, shrunk_stubble, soft_beard
 from .eyes import beside_skin, with_irises
 from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
 from .hair import HAIR_CUTS, HAIR_NAME, OWN_CUT, Fall, hair_of, scalp_of
+from .haired_segments import haired_segments
 from .larynx import larynx_of
 from .lids import with_folds
 from .long_hair import falling_hair, tied_hair
@@ -52,6 +54,7 @@ SCALP_SCALE = 30.0  # [mm] behind the hairline per unit of the scalp's map
 SCALP_OFFSET = 10.0  # [mm] in front of the hairline where the map is 0
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 TABLE_SIZE = 4096  # entries of the table from light to bytes
+FAINTEST_BEARD = 0.05  # stubble whose hairs are modelled
 BAND_ROWS = 16  # rows of texels that are coloured together, few enough for the processor's cache
 
 
@@ -118,7 +121,7 @@ def recoloured(
     tints = _tints_of_size() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = changes_of(tints.melanin_of(angle), blood)
     hair = _hair_light(angle if haired_as is None else haired_as, features)
-    grey_share = 0.12  # factor on greyness outside the scalp: brows turn grey less, lashes hardly
+    grey_share = 0.12  # factor on greyness of brows and lashes, which turn grey later
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     if behind is None and haired_as is not None:
@@ -136,7 +139,7 @@ def recoloured(
         tints.detail,
     )
     grey = features.grey * np.array([1.0, grey_share], single)
-    shown = Hairs(hair.astype(single), grey, GREY_LIGHT, kept, tints.scalp)
+    shown = Hairs(hair.astype(single), grey, GREY_LIGHT, kept, tints.scalp, tints.beard)
     bare = skin.astype(single)
     covered = kept[:0] if behind is None else grown_over(behind)
     grown = Grown(covered, hairs, MOST_COVER, np.float32(root_light))
@@ -212,8 +215,8 @@ def coloured(
         # Small pictures do not show the relief of necks, so all persons share one map.
         fine_shape=_own_shape(person) if shrink == 1 else known,
         wrinkles=_own_wrinkles(person, shrink),
-        parts=_with_hair(person, parts, angle, features, behind),
-        segments=_haired_segments(features, behind),
+        parts=_with_hair(person, parts, angle, features, behind, shrink),
+        segments=haired_segments(features, behind),
         in_tone=in_tone,
         stubble=np.float32(features.stubble) * _coarse_beard() if features.stubble else None,
     )
@@ -254,53 +257,41 @@ def _beside_light_skin(angle: float) -> Floats64:
     return np.asarray(np.exp(lost[1] - lost[0]))
 
 
-def _haired_segments(features: Features, behind: Floats32) -> Image:
-    """Change the built-in head's segments, (H, W), to a person's brows and hairline."""
-    found = load("head").segments.copy()
-    texels = found.reshape(-1)
-    haired = _texels_of(Segment.HAIR)
-    is_bald = grown_over(behind.reshape(-1)[haired]) < 0.5
-    texels[haired[is_bald]] = Segment.SKIN
-    if features.brows is not None:
-        texels[_texels_of(Segment.RIGHT_BROW, Segment.LEFT_BROW)] = Segment.SKIN
-        hairs = painted(features.brows, len(found))
-        blur = 2.0  # [texels]
-        wide = round(5.0 * blur)
-        rows = np.flatnonzero(hairs.any(axis=1))
-        near = slice(max(rows[0] - wide, 0), rows[-1] + wide)  # rows of texels around brows
-        covered = scipy.ndimage.gaussian_filter(hairs[near], blur)
-        left = np.arange(found.shape[1]) > found.shape[1] / 2
-        sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
-        # A texel is brow if its cover is at least a third of the greatest cover in its column. So a
-        # dense brow loses the free ends of its hairs, and a thin tail is kept to its end.
-        least_cover = np.maximum(0.1, covered.max(axis=0) / 3.0)
-        is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
-        found[near] = np.where(is_brow, sides, found[near])
-    return found
-
-
-@lru_cache(maxsize=2)
-def _texels_of(*segments: Segment) -> Integers64:
-    """Return flat indices of the texels in some segments of the built-in head, (n,)."""
-    texels = np.flatnonzero(np.isin(load("head").segments, segments))
-    texels.flags.writeable = False
-    return texels
-
-
 def _with_hair(
-    person: Person, parts: Sequence[Part], angle: float, features: Features, behind: Floats32
+    person: Person,
+    parts: Sequence[Part],
+    angle: float,
+    features: Features,
+    behind: Floats32,
+    shrink: int,
 ) -> tuple[Part, ...]:
-    """Replace the hair among a person's parts by hair of the person's cut; angle: ITA [deg]."""
-    others = tuple(part for part in parts if not part.name.startswith(HAIR_NAME))
+    """Replace the hair among a person's parts by beard and hair of the person's cut.
+
+    angle: ITA [deg]. behind: distances of texels behind the hairline [mm], (H, W). shrink: as in
+    `recoloured`.
+    """
+    others = [part for part in parts if not part.name.startswith(HAIR_NAME)]
     cut = HAIR_CUTS[person.identity.cut]
     uv = person.uv.astype(np.float64)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
     light = _hair_light(angle, features)
     length = person.identity.hair
     colour = to_screen(LOCKS_LIGHTER * (light + features.grey * (GREY_LIGHT - light)))
+    if features.stubble > FAINTEST_BEARD and shrink == 1:  # small pictures do not show its hairs
+        skin = person.vertices, person.faces, uv
+        colours = to_screen(np.stack([light, GREY_LIGHT]))
+        beard = beard_of(skin, features.stubble * _beard_of_texture(), colours, features.grey)
+        others.append(beard)
     if isinstance(cut, Fall):
         return (*others, *falling_hair(cut, scalp, person, colour, length))
     return (*others, *(tied_hair if cut.knot else hair_of)(cut, scalp, colour, length))
+
+
+@lru_cache(maxsize=1)
+def _beard_of_texture() -> Floats32:
+    """Return the density of a full beard in the front half of the texture, 0 to 1, (H, W)."""
+    beard = _tints_of_size().beard
+    return beard * front_of_neck(len(beard))
 
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:

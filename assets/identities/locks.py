@@ -56,7 +56,7 @@ class Growth:
 
 
 SHORT_HAIR = Growth(
-    7000, root=0.15, tip=1.02, least=2.2, longest=18.0, spread=0.32, half=0.05, lying=0.03
+    6600, root=0.15, tip=1.02, least=2.2, longest=18.0, spread=0.32, half=0.05, lying=0.03
 )
 TIED_HAIR = Growth(
     count=4400,

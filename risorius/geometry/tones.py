@@ -27,10 +27,11 @@ class Hairs(NamedTuple):
     """A person's painted hair: its colour, and the fraction of each texel that it covers."""
 
     light: Floats32  # (3,), linear
-    grey: Floats32  # shares of grey on the scalp, and elsewhere, (2,)
+    grey: Floats32  # shares of grey on the scalp and in beards, and elsewhere, (2,)
     grey_light: Floats32  # (3,), linear
     kept: Floats32  # share of the hair's colour in each texel, (H, W)
     scalp: Floats32  # above 0.01 on the scalp, (H, W)
+    beard: Floats32  # density of a full beard, 0 to 1, (H, W)
 
 
 class Grown(NamedTuple):
@@ -124,9 +125,11 @@ def _hair_of_row(
     one = np.float32(1.0)
     kept = hairs.kept[row]
     scalp = hairs.scalp[row]
+    beard = hairs.beard[row]
     for x in range(len(haired)):
         on_scalp = scalp[x] > np.float32(0.01)
-        grey[x] = hairs.grey[0] if on_scalp else hairs.grey[1]
+        within = one if on_scalp else beard[x]
+        grey[x] = hairs.grey[1] + within * (hairs.grey[0] - hairs.grey[1])
     if len(grown.covered) == 0:
         haired[:] = kept
         covered[:] = np.float32(0.0)

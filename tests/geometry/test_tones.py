@@ -13,7 +13,8 @@ def in_whole_arrays(absorbed, light, skin, former, hairs, grown, table):
     """The picture, computed by numpy on whole maps."""
     picture = np.empty((*IMAGE_SHAPE, 3), np.uint8)
     on_scalp = hairs.scalp > 0.01
-    grey = np.where(on_scalp, *hairs.grey)
+    within = np.where(on_scalp, np.float32(1.0), hairs.beard)
+    grey = hairs.grey[1] + within * (hairs.grey[0] - hairs.grey[1])
     haired = hairs.kept
     if len(grown.covered):
         haired = np.where(on_scalp, np.float32(0.0), haired)
@@ -52,7 +53,7 @@ def test_same_bits_as_whole_arrays(is_grown):
     maps = tuple(drawn(*IMAGE_SHAPE) for _ in range(4))
     absorbed = Absorbed(amounts, maps, np.float32(0.7), drawn(*IMAGE_SHAPE, low=-0.3, high=0.3))
     scalp = drawn(*IMAGE_SHAPE) * (random.random(IMAGE_SHAPE) < 0.5).astype(np.float32)
-    hairs = Hairs(drawn(3), drawn(2), drawn(3), drawn(*IMAGE_SHAPE), scalp)
+    hairs = Hairs(drawn(3), drawn(2), drawn(3), drawn(*IMAGE_SHAPE), scalp, drawn(*IMAGE_SHAPE))
     covered = drawn(*IMAGE_SHAPE) if is_grown else np.zeros((0, IMAGE_SHAPE[1]), np.float32)
     grown = Grown(covered, drawn(*IMAGE_SHAPE, low=-1.4, high=1.4), LARGEST_TONE, np.float32(0.5))
     light = drawn(3, *IMAGE_SHAPE, low=-0.2, high=1.6)
