@@ -32,6 +32,17 @@ class LidAxes(NamedTuple):
         away = points - self.centre
         return np.arctan2(away @ self.up, away @ self.forward)
 
+    def reach_by_column(self, line: Floats64, places: Floats64) -> Floats64:
+        """Distance of a line (k, 3) from the axis through the eyeball's centre [mm], by column.
+
+        places: columns, shape (n,).
+        """
+        line = line[np.argsort(self.column(line), kind="stable")]
+        away = line - self.centre
+        reach = np.hypot(away @ self.up, away @ self.forward)
+        by_column: Floats64 = np.interp(places, self.column(line), reach)
+        return by_column
+
     def column(self, points: Floats64) -> Floats64:
         """Fraction of the way from the outer corner of the eye (0) to the inner corner (1)."""
         column: Floats64 = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
@@ -82,7 +93,6 @@ class OneLid(NamedTuple):
     slide: Floats64  # (V,) share of the slide
     near: Flags  # (V,) near the margin
     front: Floats64  # (LID_COLUMNS,) rad, angle to the front edge
-    depth: Floats64  # (LID_COLUMNS,) mm from the centre of the eyeball to the front edge
 
 
 def one_lid(
@@ -108,7 +118,6 @@ def one_lid(
         slide=on_lid * _fading_weight(distance, 0.0, slide_reach * eyes.lid_reach),
         near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
         front=np.interp(where, columns, axes.angle(edge)),
-        depth=np.interp(where, columns, np.linalg.norm(edge - axes.centre, axis=1)),
     )
 
 

@@ -11,7 +11,9 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32
 from ..jit import njit
+from .rig import LID_ACTIONS
 from .state import State
+from .surface import SkinSurface
 
 
 class LidVertices(NamedTuple):
@@ -125,3 +127,12 @@ def slide_lid(carried: Floats64, lids: LidVertices, row: int, inward: float) -> 
     for k in range(3):
         carried[i, k] += (side * c + far * s) * lids.inward[e, k]
         carried[i, k] += deeper * lids.forward[e, k]
+
+
+def shut_state(lids: LidVertices, surface: SkinSurface) -> State:
+    """Return a state whose `carried` has the places at which the lids of one eye aim when shut."""
+    state = State.at_rest(surface)
+    shut = np.zeros((1, len(LID_ACTIONS)))
+    shut[:, 0] = 1.0
+    turn_lids(state, surface.positions, lids, shut, np.zeros((1, 2)))
+    return state

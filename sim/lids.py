@@ -33,13 +33,20 @@ import numpy as np
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from .landmarks import EYE_LANDMARKS, smoothstep
 from .lid_edges import LID_COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
-from .lid_fold import turn_above
+from .lid_fold import blended_turn, turn_above
 from .lid_lift import laid_on_ball, lift_off
-from .lid_motion import LidVertices, turn_lids
+from .lid_motion import LidVertices, shut_state
+from .lid_seam import (
+    CORNER_PART,
+    from_corner,
+    lowered_corners,
+    margin_sink,
+    pressed_turn,
+    raised_at_corners,
+)
 from .lip_lid_sides import lid_side
 from .rig import LID_ACTIONS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
-from .state import State
 from .surface import SkinSurface
 
 
@@ -92,12 +99,18 @@ def _lifted_eyes(
     least = np.inf
     for meeting in np.arange(own_meeting, 0.5 + 1e-6, 0.1).tolist():
         eyes = replace(rig.eyes, blink_meeting=meeting)
-        parts = [_one_eye(eyes, surface, landmarks, ball) for ball in eyeballs]
+        parts: list[_OneEye] = []
         highest = 0.0
-        for number, (part, ball) in enumerate(zip(parts, eyeballs, strict=True)):
+        for ball in eyeballs:
+            part, edges = _one_eye(eyes, surface, landmarks, ball)
             lids = _lid_vertices(rig, surface, landmarks, [part], (ball,))[0]
+            axes = lid_axes(landmarks, ball)
+            part = part._replace(
+                sink=part.sink + margin_sink(lids, part.weight, surface, axes, edges)
+            )
+            lids = lids._replace(sink=part.sink)
             lift = _closed_lid_lift(lids, surface, ball, meeting > own_meeting)
-            parts[number] = part._replace(sink=part.sink - lift)
+            parts.append(part._replace(sink=part.sink - lift))
             highest = max(highest, lift.max(initial=0.0))
         cost = max(highest, good_lift) + lift_per_meeting * (meeting - own_meeting)
         if cost < least:
@@ -173,10 +186,7 @@ def _closed_lid_lift(
 
     both: whether the lower lid is lifted, too.
     """
-    state = State.at_rest(surface)
-    closed = np.zeros((1, len(LID_ACTIONS)))
-    closed[:, 0] = 1.0
-    turn_lids(state, surface.positions, lids, closed, np.zeros((1, 2)))
+    state = shut_state(lids, surface)
     moves = np.zeros(surface.vertex_count)
     moves[lids.vertex[(lids.upper | both) & (lids.closing != 0.0)]] = 1.0
     lift = lift_off(state.carried, surface.positions, surface.faces, moves, ball)
@@ -208,18 +218,22 @@ def _up_and_forward(landmarks: Floats64, ball: Eyeball) -> tuple[Floats64, Float
     return up, forward
 
 
+def lid_axes(landmarks: Floats64, ball: Eyeball) -> LidAxes:
+    """Return the axes of the lids of an eye; landmarks: (68, 3)."""
+    outer, _, _, inner, _, _ = landmarks[list(EYE_LANDMARKS[ball.side])]
+    return LidAxes(ball.centre, *_up_and_forward(landmarks, ball), outer, inner - outer)
+
+
 def _one_eye(
     eyes: Eyes,
     surface: SkinSurface,
     landmarks: Floats64,
     ball: Eyeball,
-) -> _OneEye:
-    """Find the lids of one eye, and the turn of each lid vertex."""
+) -> tuple[_OneEye, tuple[Integers32, Integers32]]:
+    """Find the lids of one eye, the turn of each lid vertex, and the vertices of front edges."""
     x = surface.positions
     outline = landmarks[list(EYE_LANDMARKS[ball.side])]
-    axes = LidAxes(
-        ball.centre, *_up_and_forward(landmarks, ball), outline[0], outline[3] - outline[0]
-    )
+    axes = lid_axes(landmarks, ball)
     column = axes.column(x)
     angle = axes.angle(x)
     edges = front_edges(surface, axes, outline)
@@ -237,21 +251,22 @@ def _one_eye(
     weight = upper.weight + lower.weight
     opening = weight * exact + (1.0 - weight) * broad
     is_upper = side > 0.0
-    fraction = np.where(is_upper, eyes.blink_meeting - 1.0, eyes.blink_meeting)
-    closing = fraction * weight * opening
     inward = slide * np.where(is_upper, *eyes.blink_slide)
     arrives = column + inward / np.linalg.norm(axes.axis)
     plain_seam = lower.front + eyes.blink_meeting * height
-    seam = raised_at_corners(plain_seam, upper.front)  # the line where closed lids meet
+    pressed = ball.gaze_factor * pressed_turn(height / ball.gaze_factor, least_opening)
+    # The line where closed lids meet.
+    seam = lowered_corners(raised_at_corners(plain_seam, upper.front), pressed)
     meeting = np.interp(arrives, where, seam)
-    rises = np.interp(column, where, plain_seam)
-    closing += weight * (meeting - rises)
     margins = _lid_margin(upper, 1.0, column, angle) | _lid_margin(lower, -1.0, column, angle)
     margins[np.concatenate(edges)] = True
-    closing[margins] = (meeting - angle)[margins]
-    above = turn_above(surface, axes, edges[0], side, (upper.front, seam))
+    closing = np.where(margins, meeting - angle, 0.0)
+    turned = blended_turn(x, edges, closing, side, weight)
+    above = turn_above(surface, axes, edges[0], side, (upper.front, seam), turned)
     is_above = is_upper & ~margins & ~np.isnan(above)
-    closing[is_above] = -above[is_above]
+    closing[is_above] = above[is_above]
+    is_below = ~is_upper & ~margins
+    closing[is_below] = turned.fading[is_below]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is not lid
     corner_fraction = 0.5  # share of the open lid's motion at the corners, whose ligaments stretch
     rounded = np.sin(np.pi * np.clip(column, 0.0, 1.0))
@@ -259,24 +274,15 @@ def _one_eye(
     fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    sink = _margin_sink(upper, lower, column, full) * is_upper * weight
     margin_turn = np.maximum(np.interp(column, where, upper.front - seam), 0.1)
-    sink += is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
+    sink = is_upper * laid_on_ball(x, ball, column, -closing / margin_turn)
     least_turn = 1e-3  # vertices that move less do not belong to the lids
     most_moved = np.maximum.reduce([weight, fold, slide, np.abs(closing)])
     vertex = np.flatnonzero(most_moved > least_turn)
-    overlap = weight * ball.gaze_factor * _pressed_turn(opening / ball.gaze_factor, least_opening)
+    overlap = weight * ball.gaze_factor * pressed_turn(opening / ball.gaze_factor, least_opening)
+    overlap *= smoothstep(from_corner(column) / CORNER_PART)
     values = (weight, closing, overlap, sink, fold, opening, slide)
-    return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values))
-
-
-def _margin_sink(upper: OneLid, lower: OneLid, column: Floats64, full: Floats64) -> Floats64:
-    """Return how far the closed upper lid's margin sinks to meet the lower lid [mm], shape (V,)."""
-    proud_height = 0.7  # mm that the closed upper lid lies in front of the lower; 0 at corners
-    where = np.linspace(0.0, 1.0, LID_COLUMNS)
-    proud = proud_height * np.minimum(2.0 * np.interp(column, where, full), 1.0)
-    sunk: Floats64 = np.interp(column, where, upper.depth - lower.depth) - proud
-    return sunk
+    return _OneEye(vertex, is_upper[vertex], *(each[vertex] for each in values)), edges
 
 
 def _slide_shares(near: Floats64, column: Floats64, full: Floats64) -> Floats64:
@@ -315,26 +321,6 @@ def _lid_margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> 
     where = np.linspace(0.0, 1.0, LID_COLUMNS)
     within: Flags = lid.near & (sign * (angle - np.interp(column, where, lid.front)) < edge_turn)
     return within
-
-
-def _pressed_turn(opening: Floats64, least_opening: float) -> Floats64:
-    """Return how far closed lids overlap [rad], from the opening of the eye there."""
-    wide_opening = 0.3  # rad: lids of a wider opening are pressed fully
-    most_turn = 0.11  # rad (1.4 mm)
-    width = (opening - least_opening) / (wide_opening - least_opening)
-    return most_turn * smoothstep(width)
-
-
-def raised_at_corners(seam: Floats64, upper: Floats64) -> Floats64:
-    """Return the seam [rad] by column, raised beside a corner that lies above the lower lid's edge.
-
-    Lids that meet below such a corner leave a notch beside it. upper: front edge of the upper lid.
-    """
-    where = np.linspace(0.0, 1.0, LID_COLUMNS)
-    corner_slope = 0.5  # [rad] over the width of the opening
-    raised = np.maximum(seam[0] - corner_slope * where, seam[-1] - corner_slope * (1.0 - where))
-    joined: Floats64 = np.maximum(seam, np.minimum(raised, upper))
-    return joined
 
 
 def _smoothed_opening(height: Floats64) -> Floats64:
