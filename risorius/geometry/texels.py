@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .arrays import Floats64, Integers64
+from .arrays import Floats64, Integers32, Integers64
 
 
 @dataclass(frozen=True)
 class Texels:
-    """Texels within triangles; a texel of several triangles occurs several times."""
+    """Texels within triangles, row by row; a texel of several triangles belongs to one of them."""
 
     rows: Integers64
     """From the top, shape (n,)."""
@@ -31,9 +31,8 @@ class Texels:
         """Find the texels in triangles, or within a margin [texels] of triangles.
 
         corners: texture coordinates (F, 3, 2), from the left and from below, 0..1. size: height and
-        width. The result is sorted by depth inside the triangle, deepest last, so that texels
-        inside triangles are drawn over margins. Raises ValueError if triangles cover the picture
-        many times over.
+        width. A texel belongs to the triangle in which it lies deepest, so triangles hide the
+        margins of others. Raises ValueError if triangles cover the picture many times over.
         """
         height, width = size
         pixels = corners * [width, -height] + [-0.5, height - 0.5]
@@ -46,17 +45,13 @@ class Texels:
         most_tries = 60_000_000  # a usual layout needs at most two entries for each texel
         if sides.prod(axis=1).sum() > most_tries:
             raise ValueError("texture coordinates cover the picture many times over")
-        found = np.empty((0, 3), np.int64)
-        weights = np.empty((0, 3))
-        count = _walk_texels(pixels, boxes, margin, found, weights)
-        found = np.empty((count, 3), np.int64)
-        weights = np.empty((count, 3))
-        _walk_texels(pixels, boxes, margin, found, weights)
-        order = np.argsort(weights.min(axis=1), kind="stable")
-        inside = np.maximum(weights[order], 0.0)
-        inside /= inside.sum(axis=1, keepdims=True)
-        rows, columns, faces = found[order].T
-        return cls(rows, columns, faces, inside)
+        owner = np.full(size, np.int32(-1))
+        _find_owners(pixels, boxes, margin, np.full(size, -np.inf), owner)
+        rows, columns = np.nonzero(owner >= 0)
+        faces = owner[rows, columns].astype(np.int64)
+        weights = np.empty((len(rows), 3))
+        _write_weights(pixels, rows, columns, faces, weights)
+        return cls(rows, columns, faces, weights)
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
         """Values of corners, (F, 3, ...), at the texels, shape (n, ...)."""
@@ -78,11 +73,10 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
 
 
 @njit
-def _walk_texels(
-    pixels: Floats64, boxes: Integers64, margin: float, found: Integers64, weights: Floats64
-) -> int:
-    """Count all entries; write row, column, triangle and weights of the entries that fit."""
-    count = 0
+def _find_owners(
+    pixels: Floats64, boxes: Integers64, margin: float, depth: Floats64, owner: Integers32
+) -> None:
+    """Write the triangle in which each texel lies deepest into `owner`, and its depth."""
     for t in range(pixels.shape[0]):
         a, b, c = pixels[t]
         ab = b - a
@@ -97,18 +91,41 @@ def _walk_texels(
         slack_c = margin * np.hypot(ab[0], ab[1]) / abs(area) + 1e-9
         for y in range(boxes[t, 1], boxes[t, 3] + 1):
             for x in range(boxes[t, 0], boxes[t, 2] + 1):
-                right = x - a[0]
-                down = y - a[1]
-                of_b = (right * ac[1] - down * ac[0]) / area
-                of_c = (ab[0] * down - ab[1] * right) / area
-                of_a = 1.0 - of_b - of_c
+                of_a, of_b, of_c = _weights_at(a, ab, ac, area, x, y)
                 if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
-                    if count < found.shape[0]:
-                        found[count, 0] = y
-                        found[count, 1] = x
-                        found[count, 2] = t
-                        weights[count, 0] = of_a
-                        weights[count, 1] = of_b
-                        weights[count, 2] = of_c
-                    count += 1
-    return count
+                    least = min(of_a, of_b, of_c)
+                    if least >= depth[y, x]:
+                        depth[y, x] = least
+                        owner[y, x] = t
+
+
+@njit
+def _write_weights(
+    pixels: Floats64, rows: Integers64, columns: Integers64, faces: Integers64, weights: Floats64
+) -> None:
+    """Write barycentric coordinates of texels, or of points on borders for texels beside them."""
+    for n in range(len(rows)):
+        a, b, c = pixels[faces[n]]
+        ab = b - a
+        ac = c - a
+        area = ab[0] * ac[1] - ab[1] * ac[0]
+        of_a, of_b, of_c = _weights_at(a, ab, ac, area, columns[n], rows[n])
+        inside_a = max(of_a, 0.0)
+        inside_b = max(of_b, 0.0)
+        inside_c = max(of_c, 0.0)
+        total = inside_a + inside_b + inside_c
+        weights[n, 0] = inside_a / total
+        weights[n, 1] = inside_b / total
+        weights[n, 2] = inside_c / total
+
+
+@njit
+def _weights_at(
+    a: Floats64, ab: Floats64, ac: Floats64, area: float, x: int, y: int
+) -> tuple[float, float, float]:
+    """Barycentric coordinates of a texel; ab and ac: sides that begin at the corner a."""
+    right = x - a[0]
+    down = y - a[1]
+    of_b = (right * ac[1] - down * ac[0]) / area
+    of_c = (ab[0] * down - ab[1] * right) / area
+    return 1.0 - of_b - of_c, of_b, of_c

@@ -21,7 +21,7 @@ def test_texels_of_a_square():
     corners = square[[[0, 1, 2], [0, 2, 3]]]
     found = Texels.within(corners, (64, 64))
     places = np.unique(np.stack([found.rows, found.columns]), axis=1)
-    assert places.shape[1] == 32 * 32
+    assert places.shape[1] == len(found.rows) == 32 * 32
     assert places.min() == 16
     assert places.max() == 47
     uv = found.interpolate(corners)
@@ -30,3 +30,34 @@ def test_texels_of_a_square():
     wider = Texels.within(corners, (64, 64), margin=2.0)
     assert wider.rows.min() == wider.columns.min() == 14
     assert wider.weights.min() >= 0.0
+
+
+def test_a_texel_belongs_to_the_triangle_in_which_it_lies_deepest(generator):
+    """Overlapping triangles and their margins equal a plain search of all triangles."""
+    size, margin = 24, 1.5
+    corners = generator.uniform(0.2, 0.8, (12, 3, 2))
+    found = Texels.within(corners, (size, size), margin)
+    down, right = np.mgrid[:size, :size]
+    texels = np.stack([right.ravel() + 0.5, size - down.ravel() - 0.5], axis=1) / size
+    depths = []
+    for triangle in corners:
+        a, b, c = triangle
+        of_bc = np.linalg.solve(np.stack([b - a, c - a], axis=1), (texels - a).T)
+        weights = np.stack([1.0 - of_bc.sum(axis=0), *of_bc])
+        opposite = np.linalg.norm(
+            np.roll(triangle, 1, axis=0) - np.roll(triangle, 2, axis=0), axis=1
+        )
+        area = abs(np.linalg.det(np.stack([b - a, c - a])))
+        slack = margin / size * opposite / area
+        is_near = (weights > -slack[:, None]).all(axis=0)
+        reach = margin / size
+        is_near &= (texels >= triangle.min(axis=0) - reach).all(axis=1)
+        is_near &= (texels <= triangle.max(axis=0) + reach).all(axis=1)
+        depths.append(np.where(is_near, weights.min(axis=0), -np.inf))
+    owner = np.argmax(depths, axis=0)
+    owner[np.max(depths, axis=0) == -np.inf] = -1
+    expected = owner.reshape(size, size)
+    drawn = np.full((size, size), -1)
+    drawn[found.rows, found.columns] = found.faces
+    assert np.array_equal(drawn, expected)
+    assert len(np.unique(found.faces)) > 6
