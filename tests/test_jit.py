@@ -150,6 +150,7 @@ def test_processes_that_start_together(package):
     assert package.run() == [PRINTED_RESULT]
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_while_it_compiles_stops_no_other(package):
     """Its lock ends with it, so the next process compiles at once."""
     dying = (

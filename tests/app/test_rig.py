@@ -19,6 +19,7 @@ from risorius.app.rig.poses import rest_in
 from risorius.app.rig.scene_meshes import Piece, add_mesh
 from risorius.app.rig.surface import MovingSurface
 from risorius.app.scenes import FaceScene
+from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit_head, simplifying
 from risorius.assets.fitting.topologies import recognised
 from risorius.assets.meshes import read_mesh
@@ -245,13 +246,14 @@ def test_an_option_corrects_the_role_of_a_piece(whole, tmp_path):
     assert np.abs(shapes["eyeLookUpLeft"][whole.places["eyeball_left"]]).max() > 0.2
 
 
-def test_correctives_make_sums_come_true(tmp_path, face):
+def test_correctives_make_sums_come_true(tmp_path):
     """A corrective is a shape for a pair, weighted by the product of both weights.
 
     The file stores this rule. Both shapes and the corrective add up to the simulated pair.
     """
+    face = FaceScene(coarse_head())
     path = tmp_path / "head.glb"
-    succeeded("rig", "-o", path, "--correctives", 2, "--quiet")
+    succeeded("rig", "coarse", "-o", path, "--correctives", 2, "--quiet")
     found = document(path)
     rules = found["meshes"][0]["extras"]["correctives"]
     assert len(rules) == 2
