@@ -137,7 +137,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
     way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
     way = _over_skin(way, points, normals, scalp, long)
-    off = _heights_of_roots(cut, behind, points[:, 2] - middle[2])
+    off = _heights_of_roots(cut, behind, points[:, 2] - middle[2], covers)
     points = points + off[:, None] * normals
     uneven = _hem_offsets(radius * angle)
     hem_depth = 20.0  # [mm] over which hair becomes dense
@@ -167,18 +167,24 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     return inside, hair, locks_on(hair, growth)
 
 
-def _heights_of_roots(cut: Cut, behind: Floats64, ahead: Floats64) -> Floats64:
+def _heights_of_roots(cut: Cut, behind: Floats64, ahead: Floats64, covers: Floats64) -> Floats64:
     """Return heights of the roots of strands over the skin [mm], (n,).
 
     behind: distances behind the hairline [mm], (n,). ahead: distances in front of the head's centre
-    [mm], (n,).
+    [mm], (n,). covers: as in `Scalp`.
     """
     clearance = 0.5  # [mm]
     sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
     off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
     if cut.knot:  # else light passes between nape and hair that is seen edge-on
         nape_depth = 20.0  # [mm] behind the head's centre, where hair begins below the skin
-        off -= 0.8 * smooth_step(30.0, 10.0, behind) * (ahead < -nape_depth)
+        is_nape = ahead < -nape_depth
+        off -= 0.8 * smooth_step(30.0, 10.0, behind) * is_nape
+        # Coarse triangles of the hollow nape would hide corners of the hair.
+        hollow_depth = 45.0  # [mm] behind the head's centre, behind the grooves at ears
+        off += (
+            covers * smooth_step(0.0, 8.0, behind) * smooth_step(nape_depth, hollow_depth, -ahead)
+        )
     return np.asarray(off)
 
 

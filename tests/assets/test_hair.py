@@ -321,3 +321,17 @@ def test_strands_stand_up_at_a_whorl_and_lie_around_it():
     along = hair.striation[:, 1]  # [mm] from the whorl
     assert lying[along < 4.0].max() < 0.1
     assert lying[(along > 30.0) & (along < 50.0)].min() > 0.4
+
+
+@pytest.mark.parametrize("number", [8, 91000039])
+def test_triangles_of_the_nape_cut_no_corners_out_of_tied_hair(number):
+    """In the hollow nape the layers lie over the coarse triangles of skin; once below."""
+    person = person_called(number)
+    hair = next(part for part in person.parts if part.name == HAIR_NAME)
+    is_nape = (np.abs(hair.vertices[:, 0]) < 15.0) & (hair.vertices[:, 2] < -45.0)
+    is_nape &= (hair.striation[:, 5] > 0.2) & (hair.vertices[:, 1] < -65.0)
+    layers = hair.vertices[is_nape].astype(np.float64)
+    assert len(layers) > 2
+    nearest = closest_points(layers, person.vertices, person.faces)
+    off = layers - nearest.interpolate(person.vertices)
+    assert (off * hair.normals[is_nape]).sum(axis=1).min() > 0.3
