@@ -23,6 +23,9 @@ def haired_segments(features: Features, behind: Floats32) -> Image:
     haired = _texels_of(Segment.HAIR)
     is_bald = grown_over(behind.reshape(-1)[haired]) < 0.5
     texels[haired[is_bald]] = Segment.SKIN
+    if features.hairline.tied:  # other hair begins behind the built-in hairline
+        ahead = np.flatnonzero((found == Segment.SKIN) & (behind > 0.0))
+        texels[ahead[grown_over(behind.reshape(-1)[ahead]) >= 0.5]] = Segment.HAIR
     if features.brows is not None:
         texels[_texels_of(Segment.RIGHT_BROW, Segment.LEFT_BROW)] = Segment.SKIN
         hairs = painted(features.brows, len(found))

@@ -19,11 +19,13 @@ class Hairline:
     front: distance behind the built-in hairline at the midline [mm].
     temples: further distance at the corners of the forehead [mm].
     crown: baldness of the crown, 0 to 1.
+    tied: distance by which hair that is tied back is dense farther in front [mm].
     """
 
     front: float = 0.0
     temples: float = 0.0
     crown: float = 0.0
+    tied: float = 0.0
 
     def shift(self, size: int, rows: slice = slice(None)) -> Floats32:
         """Compute distances behind the built-in hairline [mm], for `rows` of a (size, size) map."""
@@ -41,6 +43,11 @@ class Hairline:
         ahead, row, top, beside = np.array([ahead, row, top, beside], dtype=np.float32)
         whole = np.multiply.outer(ahead[rows], row)
         whole += np.multiply.outer(top[rows], beside)
+        if self.tied:
+            # At the crown and on sideburns hair is dense, or has its place.
+            before = 1.0 - smooth_step(0.8, 0.95, up[rows])
+            within = np.exp(-((across / 0.25) ** 4))
+            whole -= np.multiply.outer(self.tied * before, within).astype(np.float32)
         return np.asarray(whole, np.float32)
 
 
