@@ -122,7 +122,7 @@ MOVED_REGIONS: Mapping[str, tuple[str, ...]] = {
     "depressor_labii_inferioris": ("corners", "lower lip", "chin"),
     "mentalis": ("upper lip", "corners", "lower lip", "chin"),
     "platysma": ("corners", "lower lip", "chin", "jaw", "throat"),
-    "platysma_bands": ("throat",),
+    "platysma_bands": ("corners", "jaw", "throat"),
     "incisivus_labii_superioris": ("wings", "cheeks", "upper lip", "corners", "lower lip"),
     "incisivus_labii_inferioris": ("upper lip", "corners", "lower lip", "chin"),
     "orbicularis_oris_peripheral_upper": ("upper lip", "corners", "lower lip"),

@@ -36,6 +36,7 @@ OTHER_EXPRESSIONS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
         ("risorius", 54, (0.9, 0.0, -0.4), 5.0),
         ("buccinator", 54, (0.4, 0.0, -0.9), 2.0),
         ("depressor_anguli_oris", 54, (0.0, -1.0, 0.0), 3.0),
+        ("platysma_bands", 54, (0.4, -0.9, -0.2), 2.0),  # once 0: only the neck moved
         ("depressor_labii_inferioris", 56, (0.0, -1.0, 0.0), 3.0),
         ("mentalis", 57, (0.0, 1.0, 0.0), 3.0),
         ("incisivus_labii_superioris", 54, (-1.0, 0.0, 0.2), 1.0),
