@@ -81,7 +81,7 @@ class PolyDataRefiner:
             refined.point_data.active_texture_coordinates_name = texture
         field, active = given.active_scalars_info
         if active in refined.array_names:
-            refined.set_active_scalars(active, preference=field)  # type: ignore[arg-type]
+            refined.set_active_scalars(active, preference=field)
         return refined
 
     def with_one_topology(
