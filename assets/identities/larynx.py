@@ -27,9 +27,9 @@ def larynx_of(person: Person, size: int) -> Relief:
     below = 15.0  # [mm] down from the angle between chin and neck
     half_width = 6.5  # [mm]
     half_height = 9.0  # [mm]
-    notch = 0.25 * np.exp(-((x / 2.5) ** 2) - ((y - throat + below - 6.0) / 3.0) ** 2)
+    notch = 0.25 * np.exp(-((x / 3.5) ** 2) - ((y - throat + below - 6.0) / 4.0) ** 2)
     ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)
-    inside = smooth_step(0.02, 0.1, ridge)
+    inside = smooth_step(0.0, 0.35, ridge)  # a steeper end would be a rim in oblique light
     heights: Floats64 = person.identity.larynx * inside * (ridge - notch)
     return relief_of(texels, heights, np.ones_like(heights))
 

@@ -29,6 +29,7 @@ from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of
 from ..smooth import smooth_step
+from .necks import below_jaw, evened_neck
 from .smiles import smiling
 from .sockets import without_ridges
 from .space import Identity, Sex, person_space, scores_of
@@ -103,7 +104,7 @@ def _form_of(known: Head, identity: Identity) -> _Form:
     lid_fractions = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
     vertices = lids_on_eyes(known, bent, eyes, lid_fractions)
     chin = vertices[known.anatomy["menton"]]
-    vertices = _on_neck(vertices, chin, identity.sex)
+    vertices = _on_neck(evened_neck(vertices), chin, identity.sex)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError(
@@ -164,10 +165,7 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
 
     chin: the menton [mm], (3,).
     """
-    jaw_slope = 0.35  # slope of the lower jaw's edge, which rises to the back
-    jaw_depth = 20.0  # [mm]; z at which this edge ends
-    behind_chin = chin[2] - np.maximum(points[:, 2:], jaw_depth)
-    below = chin[1] - points[:, 1:2] + jaw_slope * behind_chin
+    below = below_jaw(points, chin)[:, None]
     # Necks measure 330 mm around in women and 398 mm in men (Gordon and others 2014, ANSUR II).
     narrowing = 0.17
     # [mm] below the jaw over which narrowing begins. It gives 322 to 338 mm around the larynx;
