@@ -53,7 +53,10 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
     middle = centre + found[:3]
     fitted = float(np.sqrt(size))
     off = np.abs(np.linalg.norm(points - middle, axis=1) - fitted)
-    is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < 1.7
+    # A whole ball is an eyeball even if it is much larger, as of infants in millimetres of adults.
+    is_whole = off.mean() < 0.03 * fitted and np.ptp(points, axis=0).min() > 1.8 * fitted
+    most_ratio = 2.6 if is_whole else 1.7
+    is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < most_ratio
     # The lids hide how far back a larger ball reaches.
     is_near = np.linalg.norm(middle - centre) < 0.6 * radius + max(fitted - radius, 0.0)
     return (middle, fitted) if is_ball and is_near else (centre, radius)

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit, fit_head
-from risorius.assets.fitting.eyeballs import sphere_of
+from risorius.assets.fitting.eyeballs import is_eyeball, sphere_of
 from risorius.assets.fitting.mouth_walls import FittedSkin, opened_jaws
 from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
 from risorius.assets.fitting.warp import ThinPlateSpline
@@ -247,6 +247,19 @@ def test_lids_of_shut_eyes_hardly_move(sleeper, name):
         places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2) + eye.centre[:2]
         skin = simulation.positions[sleeper.faces]
         assert _meets(places, skin[(skin[:, :, 2] > eye.centre[2]).all(axis=1)]).all()
+
+
+def test_a_much_larger_whole_ball_is_an_eyeball():
+    """An infant's eyeball has 1.8 times the radius that its lids suggest, and was taken for a lash.
+
+    Half of such a ball is none, because hoods and helmets are as round.
+    """
+    points = 23.9 * ball(3).vertices + (33.9, -0.4, 60.6)
+    guess = np.array([36.1, 1.3, 71.9])
+    assert is_eyeball(points, guess, 13.29)
+    assert sphere_of(points, guess, 13.29)[1] == approx(23.9, abs=0.01)
+    front = points[points[:, 2] > 60.0]
+    assert not is_eyeball(front, guess, 13.29)
 
 
 def test_a_ball_is_found_where_it_is():
