@@ -9,6 +9,7 @@ import pytest
 from risorius.app.dataset.degrading import Degradation, degraded
 
 from .command_line import succeeded
+from .without_workers import in_this_process
 
 CLEAN_PICTURE = Degradation(0.0, 0.0, None, 5)
 GREY_PICTURE = np.full((120, 120, 3), 128, np.uint8)
@@ -63,8 +64,9 @@ def test_only_pictures_and_one_label_differ(tmp_path):
     table = tmp_path / "my.toml"
     table.write_text("[degradations]\nblurred = 1\nnoisy = 1\nnoise = [4, 4]\ncompressed = 0\n")
     options = ("--count", 1, "--size", "80x64", "--sample", table, "--quiet")
-    for name, more in (("clean", ()), ("degraded", ("--degrade",))):
-        succeeded("dataset", *options, "-o", tmp_path / name, *more)
+    with in_this_process():
+        for name, more in (("clean", ()), ("degraded", ("--degrade",))):
+            succeeded("dataset", *options, "-o", tmp_path / name, *more)
     clean, other = (tmp_path / name for name in ("clean", "degraded"))
     pictures = [np.asarray(PIL.Image.open(each / "000000.png")) for each in (clean, other)]
     assert not np.array_equal(*pictures)
