@@ -22,6 +22,7 @@ import re
 import sys
 import tokenize
 import tomllib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -59,7 +60,8 @@ class Count:
     def add_python(self, text: str) -> None:
         """Count a module, given its text."""
         tree = ast.parse(text)
-        documented = docstring_lines(tree)
+        statements = list(statements_in(tree))
+        documented = docstring_lines(statements)
         tokens = [
             token
             for token in tokenize.generate_tokens(io.StringIO(text).readline)
@@ -69,17 +71,25 @@ class Count:
         lines = {line for t in tokens for line in range(t.start[0], t.end[0] + 1)}
         self.lines += len(lines)
         self.text_lines += text.count("\n")
-        self.packed += sum(is_packed(node) for node in ast.walk(tree))
+        self.packed += sum(map(is_packed, statements))
         self.constants += sum(constants_of(node) for node in tree.body)
         self.told += len(TOLD_WORDS.findall(text))
         self.relatives += len(FREE_RELATIVE.findall(text))
 
 
-def docstring_lines(tree: ast.AST) -> set[int]:
+def statements_in(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the statements below a node; `ast.walk` visits ten times as many expressions."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.stmt | ast.excepthandler | ast.match_case):
+            yield child
+            yield from statements_in(child)
+
+
+def docstring_lines(statements: Sequence[ast.AST]) -> set[int]:
     """Line numbers of docstrings, and of strings below attributes."""
     strings = [
         node
-        for node in ast.walk(tree)
+        for node in statements
         if isinstance(node, ast.Expr)
         and isinstance(node.value, ast.Constant)
         and isinstance(node.value.value, str)
