@@ -23,7 +23,8 @@ def boundary_loops(faces: Integers32) -> list[list[int]]:
         raise ValueError(f"two faces run from vertex {first} to {second}")
     edges, edge = different_pairs(np.sort(sides, axis=1))
     is_border = np.bincount(edge) == 1
-    left = {(first, second) for first, second in sides[is_border[edge]].tolist()}
+    border_sides = sides[is_border[edge]]
+    left = {(first, second) for first, second in border_sides.tolist()}
     at_border = np.isin(faces, edges[is_border]).any(axis=1)
     third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge there
     for a, b, c in faces[at_border].tolist():
@@ -83,7 +84,8 @@ def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> I
     b = rows[1:, :-1]
     c = rows[1:, 1:]
     d = rows[:-1, 1:]
-    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3).astype(np.int32)
+    corners = np.stack([a, b, c, a, c, d], axis=-1)
+    return corners.reshape(-1, 3).astype(np.int32)
 
 
 class Quartered(NamedTuple):
@@ -102,19 +104,27 @@ def quarter(faces: Integers32, vertex_count: int) -> Quartered:
          / \\ / \\
         a---ab--b
     """
-    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    edges, number = different_pairs(np.sort(sides, axis=1))
-    ab, bc, ca = vertex_count + number.reshape(-1, 3).T
+    sides = np.sort(sides_of(faces), axis=1)
+    edges, number = different_pairs(sides)
+    ab, bc, ca = vertex_count + number.reshape(3, -1)
     a, b, c = faces.T
-    children = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1)
-    return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
+    at_a = np.stack([a, ab, ca], axis=1)
+    at_b = np.stack([ab, b, bc], axis=1)
+    at_c = np.stack([ca, bc, c], axis=1)
+    central = np.stack([ab, bc, ca], axis=1)
+    children = np.stack([at_a, at_b, at_c, central], axis=1).reshape(-1, 3)
+    return Quartered(children.astype(np.int32), edges.astype(np.int32))
 
 
 def is_manifold(faces: Integers32) -> bool:
     """Whether each edge has one face, or two faces that run along it in opposite directions."""
     sides = sides_of(faces)
-    both = np.bincount(different_pairs(np.sort(sides, axis=1))[1])
-    return len(different_pairs(sides)[0]) == len(sides) and both.max(initial=0) <= 2
+    distinct_sides, _ = different_pairs(sides)
+    if len(distinct_sides) < len(sides):
+        return False
+    _, edge = different_pairs(np.sort(sides, axis=1))
+    faces_at_edge = np.bincount(edge)
+    return bool(faces_at_edge.max(initial=0) <= 2)
 
 
 def collapsed(
@@ -132,8 +142,9 @@ def collapsed(
     # On a plane, such as a subdivided polygon, all places are equally good, and it would merge many
     # vertices.
     uneven = np.random.default_rng(attempt).uniform(-unevenness, unevenness, vertices.shape)
+    size = np.ptp(vertices, axis=0).max()
     points, triangles = fast_simplification.simplify(
-        np.ascontiguousarray(vertices + uneven * np.ptp(vertices, axis=0).max()),
+        np.ascontiguousarray(vertices + uneven * size),
         np.array(faces, np.int32),  # a copy that it may write into
         target_count=count,
         preserve_border=True,

@@ -21,7 +21,7 @@ import scipy
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products, vertex_normals
-from ...geometry.sides import edges_of
+from ...geometry.sides import edges_of, side_lengths
 from ..data_files import Image
 from ..model import Head, Wrinkles
 from ..topology import quarter
@@ -76,8 +76,10 @@ def repainted(
     first, second = np.diff(drawn.corners, axis=1).transpose(1, 0, 2)
     is_upright = first[:, 0] * second[:, 1] > first[:, 1] * second[:, 0]
     is_moved = (drawn.corners != places.small.corners).any(axis=(1, 2))
-    faces_forward = cross_products(skin.vertices, skin.faces)[:, 2] > 0.0
-    kept = is_upright & is_moved & np.repeat(faces_forward, 4**places.cuts)
+    normals = cross_products(skin.vertices, skin.faces)
+    small_per_triangle = 4**places.cuts
+    faces_forward = np.repeat(normals[:, 2] > 0.0, small_per_triangle)
+    kept = is_upright & is_moved & faces_forward
     drawn = TextureLayout(drawn.uv, drawn.face_uv[kept])
     taken = TextureLayout(places.small.uv, places.small.face_uv[kept])
     return drawn_over(picture, drawn, (picture, taken)), maps_over(known, taken, drawn)
@@ -86,7 +88,7 @@ def repainted(
 def edge_lengths_at_landmarks(skin: SkinPiece) -> Floats64:
     """Return the mean length of the edges at each landmark [mm], (68,)."""
     links = edges_of(skin.faces)
-    lengths = np.linalg.norm(np.diff(skin.vertices[links], axis=1)[:, 0], axis=1)
+    lengths = side_lengths(skin.vertices, links)
     sums = np.bincount(links.ravel(), np.repeat(lengths, 2), len(skin.vertices))
     counts = np.bincount(links.ravel(), minlength=len(skin.vertices))
     means: Floats64 = sums[skin.landmarks] / np.maximum(counts[skin.landmarks], 1)

@@ -15,6 +15,7 @@ import scipy
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
+from ...geometry.normals import cross_products
 from ...geometry.polylines import arc_lengths
 from ...geometry.sides import sides_of
 from ..loading import load
@@ -57,18 +58,22 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
     piece = pieces_of(mesh.faces, len(mesh.vertices))
     face_piece = np.bincount(piece[indices]).argmax()  # the piece with most landmarks
     own = np.flatnonzero(piece[mesh.faces[:, 0]] == face_piece)
+    faces = mesh.faces[own]
     openings = []
     triangles = []
     for name, chains in OPENING_LANDMARKS.items():
         corners = [number for chain in chains for number in chain[:-1]]
+        around = points[corners]
         upper, lower = (_smooth_curve(points[list(chain)]) for chain in chains)
-        found = own[_filling(vertices, mesh.faces[own], points[corners], upper, lower)]
+        found = own[_filling(vertices, faces, around, upper, lower)]
         if not len(found) and name.endswith("eye"):
-            found = own[_sheet(vertices, mesh.faces[own], points[corners], upper, lower)]
+            found = own[_sheet(vertices, faces, around, upper, lower)]
         if len(found):
             openings.append(name)
             triangles.append(found)
-    return Filling(np.concatenate(triangles), tuple(openings)) if openings else None
+    if not openings:
+        return None
+    return Filling(np.concatenate(triangles), tuple(openings))
 
 
 def _smooth_curve(points: Floats64) -> Floats64:
@@ -97,7 +102,8 @@ def _filling(
     if height < 0.02 * width:  # shut: no triangle lies in it
         return none
     centroids = vertices[faces].mean(axis=1)
-    near = np.flatnonzero(np.linalg.norm(centroids - centre, axis=1) < 0.6 * width)
+    distances = np.linalg.norm(centroids - centre, axis=1)
+    near = np.flatnonzero(distances < 0.6 * width)
     used = np.unique(faces[near])
     _, nearest = scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])
     ends = used[nearest]
@@ -107,8 +113,9 @@ def _filling(
         # Add triangles outside the curve, between it and a side of the polygon.
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
-        if _is_polygon(faces[found]):
-            return found if _covers_opening(vertices[faces[found]], around, width) else none
+        filling = faces[found]
+        if _is_polygon(filling):
+            return found if _covers_opening(vertices[filling], around, width) else none
     return none
 
 
@@ -124,19 +131,23 @@ def _sheet(
     if (upper - lower[::-1])[:, 1].max() < least_height * width:
         return none
     corners = vertices[faces]
-    if not covering(corners, centre).any():
+    is_cover = covering(corners, centre)
+    if not is_cover.any():
         return none
+    forward = cross_products(vertices, faces)[:, 2]
+    if forward[is_cover].mean() <= 0.0:  # the mesh is inside out
+        forward = -forward
     centroids = corners.mean(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    turned = 1.0 if normals[covering(corners, centre), 2].mean() > 0.0 else -1.0
-    is_near = (turned * normals[:, 2] > 0.0) & (centroids[:, 2] > centre[2] - COVER_DEPTH)
-    near = np.flatnonzero(is_near & (np.linalg.norm(centroids - centre, axis=1) < 0.6 * width))
+    is_in_front = centroids[:, 2] > centre[2] - COVER_DEPTH
+    is_near = np.linalg.norm(centroids - centre, axis=1) < 0.6 * width
+    near = np.flatnonzero((forward > 0.0) & is_in_front & is_near)
     for size in (1.0, 0.9, 0.8):  # smaller curves too, because margins of lids are rounded
         shrunk = centre + size * (edge - centre)
         inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
         found = _without_teeth(faces, inside)
-        if _is_disc(faces[found]):
-            return found if _covers_opening(vertices[faces[found]], around, width) else none
+        sheet = faces[found]
+        if _is_disc(sheet):
+            return found if _covers_opening(vertices[sheet], around, width) else none
     return none
 
 
@@ -168,25 +179,34 @@ def _is_disc(faces: Integers32) -> bool:
     """Whether triangles form a disc: one sheet with one border that passes no vertex twice."""
     if not len(faces):
         return False
-    sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
-    border = sides[uses == 1]
+    edges, border = _edges_and_border(faces)
     is_simple = len(border) == len(np.unique(border))
-    return is_simple and len(np.unique(faces)) - len(sides) + len(faces) == 1
+    euler_characteristic = len(np.unique(faces)) - len(edges) + len(faces)
+    return is_simple and euler_characteristic == 1
 
 
 def _is_polygon(faces: Integers32) -> bool:
     """Whether triangles form one polygon with all corners on its edge."""
-    sides, uses = np.unique(np.sort(sides_of(faces), axis=1), axis=0, return_counts=True)
-    border = sides[uses == 1]
+    _, border = _edges_and_border(faces)
     count = len(faces) + 2  # corners and sides of a polygon with this many triangles
-    corner_counts = (len(border), len(np.unique(border)), len(np.unique(faces)))
-    return len(faces) > 0 and corner_counts == (count, count, count)
+    counts = (len(border), len(np.unique(border)), len(np.unique(faces)))
+    return len(faces) > 0 and counts == (count, count, count)
+
+
+def _edges_and_border(faces: Integers32) -> tuple[Integers, Integers]:
+    """Return the edges of triangles, (n, 2), and those with one triangle, (m, 2)."""
+    sides = np.sort(sides_of(faces), axis=1)
+    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    return edges, edges[uses == 1]
 
 
 def _is_inside(points: Floats64, polygon: Floats64) -> Flags:
     """Whether each point (n, 2) lies inside a polygon (m, 2); flags (n,)."""
+    full_turn = 2.0 * np.pi
     to_x, to_y = (polygon[:, None] - points).transpose(2, 0, 1)
-    angles = np.unwrap(np.arctan2(to_y, to_x), axis=0, period=2.0 * np.pi)
-    closing = np.arctan2(to_y[0], to_x[0]) - np.arctan2(to_y[-1], to_x[-1])
-    closing -= 2.0 * np.pi * np.rint(closing / (2.0 * np.pi))
-    return np.asarray(np.abs(angles[-1] - angles[0] + closing) > np.pi)
+    directions = np.arctan2(to_y, to_x)
+    angles = np.unwrap(directions, axis=0, period=full_turn)
+    closing = directions[0] - directions[-1]
+    closing -= full_turn * np.rint(closing / full_turn)
+    winding = angles[-1] - angles[0] + closing
+    return np.asarray(np.abs(winding) > np.pi)

@@ -18,7 +18,7 @@ from scipy.sparse import csgraph
 
 from ...geometry.arrays import Floats64, Integers, Integers32
 from ...geometry.mesh_graph import edge_graph, path_to, pieces_of
-from ...geometry.sides import edges_of, sides_of
+from ...geometry.sides import edges_of, side_lengths, sides_of
 from ..meshes import Mesh
 
 UPPER_LIP_CHAIN = (60, 61, 62, 63, 64)
@@ -43,10 +43,12 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
     # Greatest distance of touching lips from the line between them, relative to the distance of the
     # outer eye corners.
     most_gap = 0.01
-    near = most_gap * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
-    off = _distances(mesh.vertices, line)
-    at_corner = scipy.spatial.cKDTree(line[[0, -1]]).query(mesh.vertices)[0] < near
-    is_lip = (off < near) & ~at_corner
+    right_eye_corner, left_eye_corner = landmarks[[36, 45]]
+    near = most_gap * float(np.linalg.norm(left_eye_corner - right_eye_corner))
+    from_line = _distances(mesh.vertices, line)
+    mouth_corners = scipy.spatial.cKDTree(line[[0, -1]])
+    from_corner, _ = mouth_corners.query(mesh.vertices)
+    is_lip = (from_line < near) & (from_corner >= near)
     same = np.where(is_lip, np.arange(len(mesh.vertices)), mesh.same)
     if np.array_equal(same, mesh.same):
         return None
@@ -80,10 +82,10 @@ class LipCut:
         count = len(mesh.vertices)
         corners = mesh.faces if mesh.corners is None else mesh.corners
         rows = np.flatnonzero(self.is_below(corners))
-        place = np.arange(count)
-        place[self.sources] = count + np.arange(len(self.sources))
+        new_index = np.arange(count)
+        new_index[self.sources] = count + np.arange(len(self.sources))
         corners = corners.copy()
-        corners[rows] = place[corners[rows]]
+        corners[rows] = new_index[corners[rows]]
         same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
         # New vertices that coincide are merged.
         _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
@@ -129,9 +131,12 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     parts = _sides_of_path(mesh.faces, path)
     if len(parts) != 2:
         return None
-    up = np.subtract(*landmarks[list(OUTER_MIDDLES)])
-    centroids = [mesh.vertices[mesh.faces[part]].mean(axis=(0, 1)) for part in parts]
-    heights = [float(centroid @ up) for centroid in centroids]
+    upper_middle, lower_middle = landmarks[list(OUTER_MIDDLES)]
+    up = upper_middle - lower_middle
+    heights = []
+    for part in parts:
+        centroid = mesh.vertices[mesh.faces[part]].mean(axis=(0, 1))
+        heights.append(float(centroid @ up))
     below = parts[int(np.argmin(heights))]
     corners = mesh.faces if mesh.corners is None else mesh.corners
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
@@ -160,19 +165,18 @@ def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
     """Find a path of edges along a line (n, 3): vertex indices; None if no path joins its ends."""
     used = np.unique(mesh.faces)
     _, nearest = scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])
-    ends = used[nearest]
+    start, end = used[nearest]
     edges = edges_of(mesh.faces)
-    points = mesh.vertices[edges]
-    lengths = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
-    off = _distances(points.mean(axis=1), line)
-    # An edge at this distance from the line counts as twice as long.
-    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-    near = 0.01 * length
+    lengths = side_lengths(mesh.vertices, edges)
+    middles = mesh.vertices[edges].mean(axis=1)
+    off = _distances(middles, line)
+    line_length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    near = 0.01 * line_length  # an edge at this distance from the line counts as twice as long
     weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
     graph = edge_graph(edges, weights, len(mesh.vertices))
-    before = csgraph.dijkstra(graph, directed=False, indices=ends[0], return_predecessors=True)[1]
-    path = path_to(ends[1], before)
-    return np.array(path) if path[0] == ends[0] else None
+    _, before = csgraph.dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    path = path_to(end, before)
+    return np.array(path) if path[0] == start else None
 
 
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:

@@ -26,19 +26,23 @@ def neck_fade(vertices: Floats64, faces: Integers32, landmarks: Integers32) -> F
     eyes = vertices[landmarks[eye_landmarks], 1].mean()
     edges = [vertices[loop] for loop in boundary_loops(faces)]
     edges = [edge for edge in edges if edge[:, 1].max() < eyes]  # without the edge of a mask
-    steps = [np.roll(edge, -1, axis=0) - edge for edge in edges]
-    points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, steps))
+    if not edges:
+        return None
+    points = np.vstack(edges)
+    steps = np.vstack([np.roll(edge, -1, axis=0) - edge for edge in edges])
     # Without the upright edges of half heads.
-    is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)
+    is_level = np.abs(steps[:, 1]) < 0.5 * np.linalg.norm(steps, axis=1)
     points = points[is_level & (points[:, 1] < chin[1])]
     if len(points) < 3:
         return None
-    up = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][2]
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    up = axes[2]  # normal of the plane through the edge
     is_tilted = abs(up[1]) <= 0.5
     up = np.array([0.0, 1.0, 0.0]) if is_tilted else up * np.sign(up[1])
     bottom = float((points @ up).max())
+    to_chin = float(chin @ up) - bottom
     full_height = 25.0  # [mm] above the neck's edge, at most half of the distance to the chin
-    height = min(full_height, 0.5 * (float(chin @ up) - bottom))
+    height = min(full_height, 0.5 * to_chin)
     if height <= 0.0:
         return None
     opacity = (vertices @ up - bottom) / height
@@ -61,4 +65,5 @@ def fading_last(vertices: Floats64, faces: Integers32, landmarks: Integers32) ->
     fade = neck_fade(vertices, faces, landmarks)
     if fade is None:
         return np.arange(len(faces))
-    return np.argsort((fade[faces, 0] < 1.0).any(axis=1), kind="stable")
+    is_fading = (fade[faces, 0] < 1.0).any(axis=1)
+    return np.argsort(is_fading, kind="stable")

@@ -24,7 +24,7 @@ from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64
 from ...geometry.closest import SurfacePoints
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
-from ...geometry.sides import edges_of
+from ...geometry.sides import edges_of, side_lengths
 from ...geometry.texels import Texels, rates
 from ..data_files import Image, read_arrays, read_image
 from ..errors import AssetError
@@ -67,25 +67,22 @@ def spread_uv(
     on_rim = nearest.interpolate(is_on_rim)
     count = len(vertices)
     links = edges_of(faces)
-    trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
+    is_behind = is_behind_others(feet, vertices, links)
+    trust[is_behind & (on_rim < 0.99)] = 0.0
     # Shorter edges are stiffer. With equal stiffness, short and long edges would become equally
     # long in the texture.
-    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    # [mm] A least distance limits the stiffness between close neighbours.
-    least_distance = 0.05
+    lengths = side_lengths(vertices, links)
+    least_distance = 0.05  # [mm]; limits the stiffness between close neighbours
     stiffness = 1.0 / np.maximum(lengths, least_distance)
     linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
     linked = linked + linked.T
     degree = linked.sum(axis=0)
     neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
-    hold_range = 4.0, 12.0
+    weakest = 4.0  # stiffness of a hold relative to edges, before trust scales it
+    strongest = 12.0
+    strength = weakest + (strongest - weakest) * trust
     least_trust = 1e-6  # above 0, so that the system has a solution for every vertex
-    hold = (
-        holds
-        * neighbour
-        * (hold_range[0] + (hold_range[1] - hold_range[0]) * trust)
-        * np.maximum(trust, least_trust)
-    )
+    hold = holds * neighbour * strength * np.maximum(trust, least_trust)
     system = (sparse.diags_array(degree + hold) - linked).tocsr()
     start = nearest.interpolate(known.uv)
     scale = sparse.diags_array(1.0 / (degree + hold))
@@ -105,21 +102,21 @@ def is_behind_others(feet: Floats64, vertices: Floats64, links: Integers64) -> F
     because the vertices of a coarse skin are too far apart to separate a nostril from the nose
     around it.
     """
-    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
     # [mm]; competing vertices are farther apart than this, and their feet nearer.
     competing_distance = 2.0
-    long = links[lengths > competing_distance]
-    all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
+    long_edges = links[side_lengths(vertices, links) > competing_distance]
+    all_feet = np.vstack([feet, feet[long_edges].mean(axis=1)])
+    places = np.vstack([vertices, vertices[long_edges].mean(axis=1)])
     away = np.linalg.norm(all_feet - places, axis=1)
     competing_feet = 24
     distance, beside = scipy.spatial.cKDTree(all_feet).query(
         feet, k=min(competing_feet, len(all_feet))
     )
-    is_other = (
-        np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + competing_distance
-    )
+    apart = np.linalg.norm(places[beside] - vertices[:, None], axis=2)
+    is_other = apart > distance + competing_distance
+    has_same_foot = distance < competing_distance
     is_nearer = away[beside] < away[: len(feet), None] - 0.5 * competing_distance
-    is_behind: Flags = (is_other & (distance < competing_distance) & is_nearer).any(axis=1)
+    is_behind: Flags = (is_other & has_same_foot & is_nearer).any(axis=1)
     return is_behind
 
 
@@ -173,8 +170,9 @@ def own_skin(known: Head, skin: SkinPiece) -> tuple[Image, Image]:
     """
     picture = plain_picture(known)
     links = edges_of(skin.faces)
-    at_lids = links[np.isin(links, skin.landmarks[[37, 38, 43, 44]]).any(axis=1)]
-    lengths = np.linalg.norm(np.diff(skin.vertices[at_lids], axis=1)[:, 0], axis=1)
+    upper_lids = skin.landmarks[[37, 38, 43, 44]]
+    is_at_lid = np.isin(links, upper_lids).any(axis=1)
+    lengths = side_lengths(skin.vertices, links[is_at_lid])
     coarse_lid_edge = 3.5  # [mm], mean of the edges at the landmarks of the upper lids
     if lengths.mean() > coarse_lid_edge:
         picture = _without_lash_roots(known, picture)
@@ -184,17 +182,20 @@ def own_skin(known: Head, skin: SkinPiece) -> tuple[Image, Image]:
 def _without_lash_roots(known: Head, picture: Image) -> Image:
     """Replace the dark lines of lashes' roots in the built-in texture by the skin around."""
     roots = read_image(known.file_beside("_lids.png"), mode="L") / 255.0
+    root_rows = np.flatnonzero(roots.any(axis=1))
+    margin = 30  # [texels] above and below the roots
+    rows = slice(root_rows[0] - margin, root_rows[-1] + margin)
+    share = np.minimum(5.0 * roots[rows, :, None], 1.0)
+    near = picture[rows].astype(np.float64)
+    is_skin = share == 0.0
     size = 5.0  # [texels] of the Gaussian that fills the lines
-    low, high = np.flatnonzero(roots.any(axis=1))[[0, -1]] + [-30, 30]
-    share = np.minimum(5.0 * roots[low:high, :, None], 1.0)
-    near = picture[low:high].astype(np.float64)
-    sums, weight = (
-        scipy.ndimage.gaussian_filter(each, (size, size, 0.0))
-        for each in (near * (share == 0.0), (share == 0.0).astype(np.float64))
-    )
-    filled = near + share * (sums / np.maximum(weight, 1e-6) - near)
+    spread = (size, size, 0.0)
+    colour_sums = scipy.ndimage.gaussian_filter(near * is_skin, spread)
+    weights = scipy.ndimage.gaussian_filter(is_skin.astype(np.float64), spread)
+    skin_colours = colour_sums / np.maximum(weights, 1e-6)
+    filled = near + share * (skin_colours - near)
     drawn = picture.copy()
-    drawn[low:high] = filled.round().clip(0, 255).astype(np.uint8)
+    drawn[rows] = filled.round().clip(0, 255).astype(np.uint8)
     return drawn
 
 
@@ -231,7 +232,8 @@ def texels_within(layout: TextureLayout, size: tuple[int, int]) -> Texels:
 def sampled(picture: Unsigned8, uv: Floats64) -> Unsigned8:
     """Return the texels (n, C) of a texture (H, W, C) at texture coordinates (n, 2)."""
     height, width = picture.shape[:2]
-    columns, rows = np.floor(uv * [width, -height] + [0.0, height]).astype(np.int64).T
+    places = uv * [width, -height] + [0.0, height]  # v runs upward, and rows run downward
+    columns, rows = np.floor(places).astype(np.int64).T
     found: Unsigned8 = picture[rows.clip(0, height - 1), columns.clip(0, width - 1)]
     return found
 
@@ -298,7 +300,8 @@ def maps_over(
     segments = drawn_over(known.segments, own, (known.segments, theirs))
     texels = texels_within(own, known.wrinkles.map.shape[:2])
     found = sampled(known.wrinkles.map, texels.interpolate(theirs.corners))
-    level = _levels_of(_slopes_in(known, found, theirs, own, texels), known.wrinkles.steepest)
+    slope = _slopes_in(known, found, theirs, own, texels)
+    level = _levels_of(slope, known.wrinkles.steepest)
     wrinkles = known.wrinkles.map.copy()
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
     return (
@@ -315,7 +318,8 @@ def _slopes_in(
 
     found: texels of the built-in wrinkles there, (n, 4), with slopes along u and v of `theirs`.
     """
-    change = texels.interpolate(_rates_at_corners(theirs, own)[own.face_uv]).reshape(-1, 2, 2)
+    of_corners = _rates_at_corners(theirs, own)[own.face_uv]
+    change = texels.interpolate(of_corners).reshape(-1, 2, 2)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     changed: Floats64 = np.einsum("nij,nj->ni", change, slope)
     return changed
@@ -323,8 +327,9 @@ def _slopes_in(
 
 def _levels_of(slope: Floats64, steepest: float) -> Unsigned8:
     """Return slopes as bytes of a map of wrinkles; 255 stands for the slope `steepest`."""
-    level: Unsigned8 = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
-    return level
+    values = 128.0 + slope * (127.0 / steepest)
+    levels: Unsigned8 = values.round().clip(1, 255).astype(np.uint8)
+    return levels
 
 
 def _rates_at_corners(theirs: TextureLayout, own: TextureLayout) -> Floats64:
@@ -336,11 +341,16 @@ def _rates_at_corners(theirs: TextureLayout, own: TextureLayout) -> Floats64:
     corners = own.corners
     edges = corners[:, 1:] - corners[:, :1]
     area = np.abs(np.linalg.det(edges))
-    values = np.column_stack([rates(corners, theirs.corners).reshape(-1, 4), np.ones(len(area))])
-    values *= area[:, None]
+    weighted = area[:, None] * rates(corners, theirs.corners).reshape(-1, 4)
     rows = own.face_uv.ravel()
-    sums = [np.bincount(rows, np.repeat(each, 3), len(own.uv)) for each in values.T]
-    means: Floats64 = np.stack(sums[:4], axis=1) / np.maximum(sums[4], 1e-30)[:, None]
+
+    def sums_around(values: Floats64) -> Floats64:
+        """Sum values of triangles (F,) at the rows of `uv` that are their corners, (U,)."""
+        return np.asarray(np.bincount(rows, np.repeat(values, 3), len(own.uv)), np.float64)
+
+    sums = np.column_stack([sums_around(column) for column in weighted.T])
+    areas = np.maximum(sums_around(area), 1e-30)
+    means: Floats64 = sums / areas[:, None]
     return means
 
 
@@ -372,9 +382,11 @@ def own_picture(
     corners = texture.uv.astype(np.float64)[texture.face_uv[faces]]
     corners -= np.floor(corners.mean(axis=1, keepdims=True))  # texture coordinates wrap around
     corners = corners.clip(0.0, 1.0)
-    corners[..., 0] = (corners[..., 0] + np.searchsorted(used, numbers)[:, None]) / len(used)
-    uv, number = np.unique(corners.reshape(-1, 2).astype(np.float32), axis=0, return_inverse=True)
+    tile = np.searchsorted(used, numbers)
+    corners[..., 0] = (corners[..., 0] + tile[:, None]) / len(used)
+    rows = corners.reshape(-1, 2).astype(np.float32)
+    uv, number = np.unique(rows, axis=0, return_inverse=True)
     face_uv = number.reshape(-1, 3).astype(np.int32)
-    return pictures[0], TextureLayout(
-        uv, np.ascontiguousarray(face_uv[:, ::-1] if turned else face_uv)
-    )
+    if turned:
+        face_uv = np.ascontiguousarray(face_uv[:, ::-1])
+    return pictures[0], TextureLayout(uv, face_uv)

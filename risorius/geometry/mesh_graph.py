@@ -8,7 +8,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from .arrays import Floats64, Integers, Integers32
-from .sides import edges_of
+from .sides import edges_of, side_lengths
 
 
 def edge_graph(edges: Integers, lengths: Floats64, vertex_count: int) -> sparse.csr_array:
@@ -19,8 +19,7 @@ def edge_graph(edges: Integers, lengths: Floats64, vertex_count: int) -> sparse.
 def length_graph(vertices: Floats64, faces: Integers) -> sparse.csr_array:
     """The graph of the edges of triangles (F, 3), with the distances of vertices (V, 3)."""
     edges = edges_of(faces)
-    along = vertices[edges[:, 1]] - vertices[edges[:, 0]]
-    lengths = np.linalg.norm(along, axis=1)
+    lengths = side_lengths(vertices, edges)
     return edge_graph(edges, np.maximum(lengths, 1e-9), len(vertices))
 
 

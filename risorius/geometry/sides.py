@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .arrays import Integers, Integers64
+from .arrays import Floats64, Integers, Integers64
 
 
 def sides_of(faces: Integers) -> Integers:
@@ -25,3 +25,10 @@ def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
 def edges_of(faces: Integers) -> Integers64:
     """The edges of triangles (F, 3), each once, the lower vertex first, sorted, shape (E, 2)."""
     return different_pairs(np.sort(sides_of(faces), axis=1))[0]
+
+
+def side_lengths(vertices: Floats64, sides: Integers) -> Floats64:
+    """The lengths (n,) of sides or edges (n, 2) between vertices (V, 3), in their unit."""
+    along = vertices[sides[:, 1]] - vertices[sides[:, 0]]
+    lengths: Floats64 = np.linalg.norm(along, axis=1)
+    return lengths
