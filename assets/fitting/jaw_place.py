@@ -27,9 +27,11 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     scale = width / USUAL_WIDTH
     eyes = (landmarks[36] + landmarks[45]) / 2.0
     places = (vertices - eyes) / scale
-    is_near = (np.abs(places[:, 1] + 20.0) < 60.0) & (places[:, 2] > -150.0)
+    is_level_with_ear = np.abs(places[:, 1] + 20.0) < 60.0
+    is_near = is_level_with_ear & (places[:, 2] > -150.0)
     points = points_on_triangles(places, faces[is_near[faces].all(axis=1)])
-    found = [_ear_place(points * (side, 1.0, 1.0)) for side in (-1.0, 1.0)]
+    mirrored = points * (-1.0, 1.0, 1.0)
+    found = [_ear_place(mirrored), _ear_place(points)]
     ears = [ear for ear in found if ear is not None]
     if not ears:
         return None
@@ -40,7 +42,9 @@ def jaw_axis_of(vertices: Floats64, faces: Integers32, landmarks: Floats64) -> F
     up = np.clip(height + above_middle, -30.0, -8.0)
     forward = np.clip(front + before, -75.0, -40.0)
     out = 0.36 * USUAL_WIDTH
-    return np.asarray(eyes + scale * np.array([[-out, up, forward], [out, up, forward]]))
+    right = (-out, up, forward)
+    left = (out, up, forward)
+    return np.asarray(eyes + scale * np.array([right, left]))
 
 
 def with_human_opening(
@@ -55,16 +59,20 @@ def with_human_opening(
     axis: condyles, (2, 3) [mm]. landmarks: (68, 3) [mm]; the lower lip stands for the teeth.
     """
     jaw = dict(rig["jaw"])
-    down, forward = (landmarks[66] - axis.mean(axis=0))[1:] * (-1.0, 1.0)
+    lip = landmarks[66] - axis.mean(axis=0)
+    down = -lip[1]
+    forward = lip[2]
     reach = float(np.hypot(down, forward))
     opening = 0.75 * 50.0 / 100.0  # relative to the distance from axis to teeth, 100 mm in men
     gains = np.linspace(0.8, 1.3, 51)
     angles = gains * np.radians(jaw["opening_deg"])
-    sunk = forward * np.sin(angles) - down * (1.0 - np.cos(angles))
-    sunk -= gains * jaw["opening_glide"][1]
-    receded = forward * (1.0 - np.cos(angles)) + down * np.sin(angles)
-    receded -= gains * jaw["opening_glide"][2]
-    gain = float(np.interp(opening * reach, np.hypot(sunk, receded), gains))
+    sine = np.sin(angles)
+    versine = 1.0 - np.cos(angles)
+    _, rise, advance = jaw["opening_glide"]
+    sunk = forward * sine - down * versine - gains * rise
+    receded = forward * versine + down * sine - gains * advance
+    openings = np.hypot(sunk, receded)
+    gain = float(np.interp(opening * reach, openings, gains))
     jaw["opening_deg"] *= gain
     jaw["opening_glide"] = [gain * component for component in jaw["opening_glide"]]
     return {**rig, "jaw": jaw}
@@ -80,7 +88,8 @@ def _ear_place(points: Floats64) -> tuple[float, float] | None:
     fronts = np.full(len(heights), np.nan)
     for row, height in enumerate(heights):
         section = points[np.abs(points[:, 1] - height) < 2.5]
-        fronts[row] = _ear_front(_outline(section, depths), depths)
+        outline = _outline(section, depths)
+        fronts[row] = _ear_front(outline, depths)
     has_ear = ~np.isnan(fronts)
     if has_ear.sum() < 5:
         return None

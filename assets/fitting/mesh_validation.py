@@ -15,7 +15,7 @@ from scipy.sparse import csgraph
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32, Integers64
 from ...geometry.mesh_graph import length_graph, path_lengths, path_to, pieces_of
-from ...geometry.sides import sides_of
+from ...geometry.sides import side_lengths, sides_of
 from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
@@ -118,7 +118,8 @@ def with_seams_joined(
         check_manifold(joined[is_skin])
     except AssetError:
         return faces, landmarks
-    return (joined, marked) if (piece[marked] == piece[marked[0]]).all() else (faces, landmarks)
+    has_all_landmarks = (piece[marked] == piece[marked[0]]).all()
+    return (joined, marked) if has_all_landmarks else (faces, landmarks)
 
 
 def _check_count(faces: Integers32, fewest: float, most: float) -> None:
@@ -257,11 +258,14 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     inner_lips = slice(60, 68)
     edge = skin.landmarks[inner_lips]
     graph = length_graph(skin.vertices, skin.faces)
-    before = csgraph.dijkstra(graph, directed=False, indices=edge, return_predecessors=True)[1]
-    ring = [path_to(end, before[k]) for k, end in enumerate(np.roll(edge, -1))]
-    is_edge = np.isin(np.arange(len(skin.vertices)), np.concatenate(ring))
-    piece = pieces_of(skin.faces[~is_edge[skin.faces].any(axis=1)], len(skin.vertices))
-    is_behind = ~is_edge & ~np.isin(piece, piece[skin.landmarks[: inner_lips.start]])
+    _, before = csgraph.dijkstra(graph, directed=False, indices=edge, return_predecessors=True)
+    is_edge = np.zeros(len(skin.vertices), np.bool_)
+    for from_start, end in zip(before, np.roll(edge, -1), strict=True):
+        is_edge[path_to(end, from_start)] = True
+    touches_edge = is_edge[skin.faces].any(axis=1)
+    piece = pieces_of(skin.faces[~touches_edge], len(skin.vertices))
+    landmark_pieces = piece[skin.landmarks[: inner_lips.start]]
+    is_behind = ~is_edge & ~np.isin(piece, landmark_pieces)
     deepest = skin.vertices[is_behind, 2].min(initial=np.inf)
     least_bag_depth = 15.0  # [mm]
     if deepest > skin.vertices[is_edge, 2].mean() - least_bag_depth:
@@ -294,7 +298,9 @@ def rim_behind(skin: SkinPiece, is_edge: Flags, is_behind: Flags) -> Flags:
     row = is_edge
     reached = 0.0  # [mm] mean depth of the last row; that of the rim's last row is nearest to 4 mm
     while True:
-        beside = np.isin(np.arange(len(rows)), faces[row[faces].any(axis=1)])
+        touches_row = row[faces].any(axis=1)
+        beside = np.zeros(len(rows), np.bool_)
+        beside[faces[touches_row]] = True
         row = beside & is_behind & ~rows
         if not row.any() or abs(depth[row].mean() - rim_depth) > abs(reached - rim_depth):
             break
@@ -306,10 +312,11 @@ def rim_behind(skin: SkinPiece, is_edge: Flags, is_behind: Flags) -> Flags:
 
 def _border_length(skin: SkinPiece, is_removed: Flags) -> float:
     """Return the length of the borders of a skin [mm] without some of its vertices, (V,)."""
-    sides = np.sort(sides_of(skin.faces[~is_removed[skin.faces].any(axis=1)]), axis=1)
-    sides, uses = np.unique(sides, axis=0, return_counts=True)
-    ends = skin.vertices[sides[uses == 1]]
-    return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
+    loses_corner = is_removed[skin.faces].any(axis=1)
+    sides = np.sort(sides_of(skin.faces[~loses_corner]), axis=1)
+    edges, uses = np.unique(sides, axis=0, return_counts=True)
+    border = edges[uses == 1]
+    return float(side_lengths(skin.vertices, border).sum())
 
 
 def is_covered(corners: Floats64, point: Floats64) -> bool:
@@ -319,7 +326,8 @@ def is_covered(corners: Floats64, point: Floats64) -> bool:
 
 def covering(corners: Floats64, point: Floats64) -> Flags:
     """Return flags of the triangles (F, 3, 3) that cover a point (3,) [mm], shape (F,)."""
-    edge_x, edge_y, _ = np.moveaxis(np.roll(corners, -1, axis=1) - corners, 2, 0)
+    sides = np.roll(corners, -1, axis=1) - corners
+    edge_x, edge_y, _ = np.moveaxis(sides, 2, 0)
     to_x, to_y, _ = np.moveaxis(point - corners, 2, 0)
     turn = edge_x * to_y - edge_y * to_x
     is_hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)

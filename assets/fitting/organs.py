@@ -47,9 +47,9 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
+        from_landmarks, _ = scipy.spatial.cKDTree(target).query(fitted.vertices)
         # Skin that faces the ball is the wall of a socket, not a lid. A socket may be too narrow.
-        is_lid = outward > -0.5
-        is_lid &= scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < lid_depth
+        is_lid = (outward > -0.5) & (from_landmarks < lid_depth)
         between = _points_between(fitted, is_lid, centre)
         skin = np.vstack([target, fitted.vertices[is_lid], between])
         iris = scale * eye.iris_radius
@@ -97,8 +97,9 @@ def _behind_lids(
     (n, 3).
     """
     around = np.arctan2(skin[:, 1] - opening[1], skin[:, 0] - opening[0])
+    turns = (around / np.pi + 1.0) / 2.0  # 0 to 1
     sector_count = 12  # around an eye; in each sector the nearest skin should touch the eyeball
-    sector = np.floor((around / np.pi + 1.0) / 2.0 * sector_count).astype(int) % sector_count
+    sector = np.floor(turns * sector_count).astype(int) % sector_count
     parts = [skin[sector == k] for k in np.unique(sector)]
 
     def off(values: Floats64) -> Floats64:
@@ -110,9 +111,9 @@ def _behind_lids(
         aside = aside_cost * (values[:2] - centre[:2])
         size_cost = 20.0  # [mm] for a sphere twice as large
         sunk_cost = 3.0  # cost of skin inside the ball, relative to a gap in front of it
-        return np.concatenate(
-            [np.where(gaps < 0.0, sunk_cost * gaps, gaps), aside, [size_cost * values[3]]]
-        )
+        gap_errors = np.where(gaps < 0.0, sunk_cost * gaps, gaps)
+        growth_error = size_cost * values[3]
+        return np.concatenate([gap_errors, aside, [growth_error]])
 
     # [mm]; sectors with a greater error count less, because the corners of an eye are off the ball.
     touching_distance = 0.5
@@ -203,16 +204,15 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similar
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
     least_forward = 0.2  # z of a normal; skin with a larger one may be in front of teeth
     skin = fitted.vertices[fitted.normals[:, 2] > least_forward]
-    # Teeth and gums stay behind skin within this distance in x and y [mm]; of each point, this many
-    # nearest vertices count.
-    teeth_clearance = 4.0, 3
-    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=teeth_clearance[1])
+    neighbour_count = 3
+    seen_from_front = scipy.spatial.cKDTree(skin[:, :2])
+    distance, beside = seen_from_front.query(placed[:, :2], k=neighbour_count)
+    clearance = 4.0  # [mm] in x and y; teeth and gums stay behind nearer skin
+    skin_front = np.where(distance < clearance, skin[beside, 2], np.inf).min(axis=1)
     stiff_depth = 2.5  # [mm] from teeth and gums to the skin; lips and cheeks are thicker
-    depth = (
-        np.where(distance < teeth_clearance[0], skin[beside, 2], np.inf).min(axis=1) - stiff_depth
-    )
+    protruding = placed[:, 2] - (skin_front - stiff_depth)
     farthest_back = 10.0  # [mm]; greatest motion of the teeth backward
-    back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, farthest_back))
+    back = float(np.clip(protruding.max(initial=0.0), 0.0, farthest_back))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
 
@@ -246,9 +246,10 @@ def _resized_eyeball(part: Part, old: Eye, new: Eye) -> Part:
     """Give an eyeball the size, the position and the iris of another eye."""
     away = part.vertices - old.centre
     reach = np.linalg.norm(away, axis=1)
-    angle = np.arccos(away[:, 2] / reach)
-    edges = [0.0, *(np.arcsin(eye.iris_radius / eye.radius) for eye in (old, new)), np.pi]
-    placed = np.interp(angle, [0.0, edges[1], np.pi], [0.0, edges[2], np.pi])
+    angle = np.arccos(away[:, 2] / reach)  # from the pupil, seen from the ball's centre
+    old_iris = np.arcsin(old.iris_radius / old.radius)
+    new_iris = np.arcsin(new.iris_radius / new.radius)
+    placed = np.interp(angle, [0.0, old_iris, np.pi], [0.0, new_iris, np.pi])
     beside = unit_vectors(away[:, :2])
     directions = np.column_stack([np.sin(placed)[:, None] * beside, np.cos(placed)])
     bulge = new.iris_radius / old.iris_radius * (reach - old.radius)
@@ -334,9 +335,11 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     tucked_depth = 0.2  # [mm] from the lids inward to the beginning of a rim
     sunk_depth = 0.3  # [mm] from the ball's surface inward to the end of a rim
     reach = (1.0 - fraction) * (length + tucked_depth) + fraction * (eye.radius - sunk_depth)
-    ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
-    points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
-    return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)
+    forward = np.array([0.0, 0.0, 1.0])
+    directions = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * forward
+    points = eye.centre + (reach[..., None] * directions).reshape(-1, 3)
+    rows = np.arange(len(points)).reshape(RIM_ROWS, -1)
+    return points, grid_faces(rows, closed=True)
 
 
 def _with_rims(part: Part, rims: Sequence[tuple[Floats64, Integers32]]) -> Part:
