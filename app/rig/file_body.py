@@ -20,8 +20,9 @@ from risorius.assets.fitting.mesh_validation import with_seams_joined
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Flags, Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
-from risorius.geometry.mesh_graph import pieces_of
+from risorius.geometry.mesh_graph import edge_graph, pieces_of
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.sides import edges_of
 from risorius.geometry.transforms import moved_points
 
 from ..scenes.bent_part import FaceNow
@@ -143,20 +144,23 @@ class FileBody:
         starts = np.flatnonzero(np.diff(piece[order])) + 1
         roots = np.zeros(len(indices), np.int32)
         for members in np.split(order, starts):
-            near = members[distance[members] < distance[members].min() + ROOT_TOLERANCE]
-            roots[members] = near[scipy.spatial.cKDTree(points[near]).query(points[members])[1]]
-        local_index = np.full(len(self.rest), -1, np.int32)
-        local_index[indices] = np.arange(len(indices))
-        faces = local_index[self.faces]
-        part = _part("on_skin", points, faces[(faces >= 0).all(axis=1)], CRANIUM_BONE, roots)
+            farthest = distance[members].min() + ROOT_TOLERANCE
+            piece_roots = members[distance[members] < farthest]
+            _, nearest = scipy.spatial.cKDTree(points[piece_roots]).query(points[members])
+            roots[members] = piece_roots[nearest]
+        faces = _faces_among(indices, self.faces, len(self.rest))
+        part = _part("on_skin", points, faces, CRANIUM_BONE, roots)
         return SkinPart(part, head.vertices, head.faces)
 
 
 def _is_near_eyes(points: Floats64, head: FittedHead) -> Flags:
     """Return flags of points (n, 3) [mm] at the eyeballs: skin between the lids of a scan."""
     near = 1.8  # radii of an eyeball
-    reaches = [np.linalg.norm(points - eye.centre, axis=1) / eye.radius for eye in head.eyes]
-    return np.asarray(np.min(reaches, axis=0) < near)
+    is_near = np.zeros(len(points), np.bool_)
+    for eye in head.eyes:
+        distances = np.linalg.norm(points - eye.centre, axis=1)
+        is_near |= distances / eye.radius < near
+    return is_near
 
 
 class _Bag:
@@ -173,10 +177,10 @@ class _Bag:
             is_deep &= depth < np.median(depth[is_deep])
         self.deep = indices[is_deep]
         self._free = indices[~is_deep]
-        sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         count = len(rest)
-        links = scipy.sparse.coo_array((np.ones(len(sides)), sides.T), (count, count)).tocsr()
-        links = (links + links.T).astype(bool).astype(np.float64)
+        edges = edges_of(faces)
+        links = edge_graph(edges, np.ones(len(edges)), count)
+        links = links + links.T
         degree = scipy.sparse.diags_array(np.asarray(links.sum(axis=1)).ravel())
         laplacian = (degree - links).tocsr()[self._free]
         self._others = np.setdiff1d(np.arange(count), self._free)
@@ -219,11 +223,18 @@ def with_own_tongue(
     rest: all vertices of the file [mm], (V, 3). indices: vertices of the tongue, (n,). faces: all
     triangles of the file, (F, 3).
     """
-    local_index = np.full(len(rest), -1, np.int32)
-    local_index[indices] = np.arange(len(indices))
-    own = local_index[faces]
-    tongue = _part(TONGUE_NAME, rest[indices], own[(own >= 0).all(axis=1)], "mandible", None)
+    own_faces = _faces_among(indices, faces, len(rest))
+    tongue = _part(TONGUE_NAME, rest[indices], own_faces, "mandible", None)
     return tuple(tongue if part.name == TONGUE_NAME else part for part in head.parts)
+
+
+def _faces_among(indices: Integers, faces: Integers32, count: int) -> Integers32:
+    """Return the triangles between n of `count` vertices, as rows of `indices` (n,), (m, 3)."""
+    local_index = np.full(count, -1, np.int32)
+    local_index[indices] = np.arange(len(indices))
+    local_faces = local_index[faces]
+    is_whole = (local_faces >= 0).all(axis=1)
+    return local_faces[is_whole]
 
 
 def _part(

@@ -46,15 +46,18 @@ def sphere_of(points: Floats64, centre: Floats64, radius: float) -> tuple[Floats
     """
     local = points - centre
     matrix = np.column_stack([2.0 * local, np.ones(len(local))])
-    found, _, rank, _ = np.linalg.lstsq(matrix, (local**2).sum(axis=1), rcond=None)
-    size = float(found[3] + found[:3] @ found[:3])
-    if rank < 4 or size <= 0.0:
+    squares = (local**2).sum(axis=1)
+    found, _, rank, _ = np.linalg.lstsq(matrix, squares, rcond=None)
+    shift = found[:3]
+    squared_radius = float(found[3] + shift @ shift)
+    if rank < 4 or squared_radius <= 0.0:
         return centre, radius
-    middle = centre + found[:3]
-    fitted = float(np.sqrt(size))
+    middle = centre + shift
+    fitted = float(np.sqrt(squared_radius))
     off = np.abs(np.linalg.norm(points - middle, axis=1) - fitted)
     # A whole ball is an eyeball even if it is much larger, as of infants in millimetres of adults.
-    is_whole = off.mean() < 0.03 * fitted and np.ptp(points, axis=0).min() > 1.8 * fitted
+    narrowest = np.ptp(points, axis=0).min()
+    is_whole = off.mean() < 0.03 * fitted and narrowest > 1.8 * fitted
     most_ratio = 2.6 if is_whole else 1.7
     is_ball = off.mean() < 0.12 * fitted and 0.6 < fitted / radius < most_ratio
     # The lids hide how far back a larger ball reaches.

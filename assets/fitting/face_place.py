@@ -63,14 +63,13 @@ def is_face(points: Floats64) -> bool:
 
 def _check_different(points: Floats64, template: Floats64) -> None:
     """Raise AssetError if two landmarks coincide that are far apart on any face; (68, 3) [mm]."""
-    distances, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
+    distances = np.linalg.norm(points[:, None] - points, axis=2)
+    known = np.linalg.norm(template[:, None] - template, axis=2)
     # Landmarks with at least this distance on the built-in head must not coincide, because a muscle
     # between them needs a length.
     least_built_in_distance = 30.0  # [mm]
-    a, b = np.unravel_index(
-        (distances + np.where(known > least_built_in_distance, 0.0, np.inf)).argmin(),
-        distances.shape,
-    )
+    compared = np.where(known > least_built_in_distance, distances, np.inf)
+    a, b = np.unravel_index(compared.argmin(), compared.shape)
     least_distance = 1.0  # [mm]
     if distances[a, b] < least_distance:
         raise AssetError(

@@ -61,10 +61,13 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
     stiffnesses = (1e3, 300.0, 100.0)  # [mm]; smoothing of the warp in each step
     for stiffness in stiffnesses:
         feet = _feet(laid, head, chosen, face.mesh, faces)
-        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < FARTHEST_MATCH)
-        give = np.concatenate([np.zeros(len(indices)), np.full(is_laid.sum(), stiffness)])
+        distances = np.linalg.norm(feet - laid[chosen], axis=1)
+        is_laid = is_free & (distances < FARTHEST_MATCH)
         source = np.vstack([known_points, points[is_laid]])
-        laid = ThinPlateSpline(source, np.vstack([face.given, feet[is_laid]]), give).points(own)
+        target = np.vstack([face.given, feet[is_laid]])
+        give = np.zeros(len(source))  # known landmarks are met exactly
+        give[len(indices) :] = stiffness
+        laid = ThinPlateSpline(source, target, give).points(own)
     found = _feet(laid, head, head.landmarks, face.mesh, faces)
     found[indices] = face.given
     return similarity.inverse.points(face.moved.inverse.points(found))
@@ -112,10 +115,12 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
     vertices, given: in the face space [mm], (V, 3) and (m, 3).
     """
     centroids = vertices[faces].mean(axis=1)
-    under = scipy.spatial.cKDTree(centroids).query(given)[1]
+    _, under = scipy.spatial.cKDTree(centroids).query(given)
     piece = pieces_of(faces, len(vertices))[faces[:, 0]]
     is_skin = piece == np.bincount(piece[under]).argmax()
-    if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
+    skin_under = faces[under[is_skin[under]]]
+    forward = cross_products(vertices, skin_under)[:, 2]
+    if forward.sum() < 0.0:  # the mesh is inside out
         faces = faces[:, ::-1]
     face_radii = np.array([60.0, 90.0, 120.0])  # [mm] around the points in x, y and z
     low = given.min(axis=0) - face_radii
@@ -127,11 +132,14 @@ def skin_around(vertices: Floats64, faces: Integers32, given: Floats64) -> Integ
 def _around_landmarks(head: Head) -> Integers32:
     """Choose 300 to 600 vertices near the landmarks of a head; leave out the landmarks."""
     reach = 30.0  # [mm] around landmarks, within which the built-in face is fitted to the mesh
-    near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < reach
-    near[head.landmarks] = False
-    every = np.flatnonzero(near).astype(np.int32)
+    tree = scipy.spatial.cKDTree(head.vertices[head.landmarks])
+    distances, _ = tree.query(head.vertices)
+    is_near = distances < reach
+    is_near[head.landmarks] = False
+    near = np.flatnonzero(is_near).astype(np.int32)
     most_points = 300  # more would take longer with the same result
-    return every[:: max(len(every) // most_points, 1)]
+    step = max(len(near) // most_points, 1)
+    return near[::step]
 
 
 def _feet(
@@ -148,7 +156,8 @@ def _feet(
 def centred(vertices: Floats64, radius: float) -> Similarity:
     """Return the similarity that moves a mesh (V, 3) to the origin and scales it to `radius`."""
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    scale = radius / max(float(np.linalg.norm(vertices - centre, axis=1).max()), 1e-12)
+    distances = np.linalg.norm(vertices - centre, axis=1)
+    scale = radius / max(float(distances.max()), 1e-12)
     return Similarity(scale, np.eye(3), -scale * centre)
 
 

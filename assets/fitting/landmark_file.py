@@ -276,8 +276,9 @@ def groups_in_disorder(points: Floats64, template: Floats64) -> list[LandmarkGro
 
 def _is_disordered(group: LandmarkGroup, points: Floats64, template: Floats64) -> bool:
     own = slice(group.first, group.first + group.count)
-    given, known = (each[own] - each[own].mean(axis=0) for each in (points, template))
-    best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)[1]
+    given = points[own] - points[own].mean(axis=0)
+    known = template[own] - template[own].mean(axis=0)
+    _, best = scipy.optimize.linear_sum_assignment(given @ known.T, maximize=True)
     moved = known - known[best]
     size = 0.5 * float((moved * moved).sum())
     least_difference = 3.0  # [mm] between points in both orders; less decides nothing

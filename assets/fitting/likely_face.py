@@ -85,7 +85,7 @@ class LikelyFace:
             planes, off = self._planes(vertices)
             rows.append(planes)
             right.append(off)
-        found = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)[0]
+        found, *_ = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)
         self._weights = self._weights + found[:count]
         shift = found[count : count + 3]
         turn = found[count + 3 : -1]
@@ -105,13 +105,11 @@ class LikelyFace:
         is_near = distance < FARTHEST_MATCH
         normals = normals[is_near]
         feet = feet[is_near]
+        modes = self._modes[:, self.skin[is_near]]
         motions = _motions(feet).reshape(len(feet), 3, 7)
-        rows = np.hstack(
-            [
-                np.einsum("kni,ni->nk", self._modes[:, self.skin[is_near]], normals),
-                -np.einsum("nij,ni->nj", motions, normals),
-            ]
-        )
+        by_weights = np.einsum("kni,ni->nk", modes, normals)
+        by_motion = -np.einsum("nij,ni->nj", motions, normals)
+        rows = np.hstack([by_weights, by_motion])
         off = np.einsum("ni,ni->n", feet - points[is_near], normals)
         doubtful = 6.0  # [mm]; points at greater distances count less
         weight = 1.0 / np.sqrt(1.0 + (distance[is_near] / doubtful) ** 2)
@@ -133,7 +131,13 @@ class LikelyFace:
 def _motions(points: Floats64) -> Floats64:
     """Return the Jacobian (3 n, 7) of points (n, 3) by shift (3), rotation (3) and scale (1)."""
     x, y, z = points.T
-    none = np.zeros_like(x)
-    turns = np.stack([none, z, -y, -z, none, x, y, -x, none], axis=1).reshape(-1, 3, 3)
+    turns = np.zeros((len(points), 3, 3))  # point, moved coordinate, axis of rotation
+    turns[:, 0, 1] = z
+    turns[:, 0, 2] = -y
+    turns[:, 1, 0] = -z
+    turns[:, 1, 2] = x
+    turns[:, 2, 0] = y
+    turns[:, 2, 1] = -x
     shifts = np.broadcast_to(np.eye(3), turns.shape)
-    return np.concatenate([shifts, turns, points[:, :, None]], axis=2).reshape(-1, 7)
+    growths = points[:, :, None]
+    return np.concatenate([shifts, turns, growths], axis=2).reshape(-1, 7)

@@ -102,9 +102,11 @@ def within_skin(
     for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
         away = stretched_walls(walls, weights, mandible) - centre
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
-        ray, distance, cosine = exits(centre, away / length[:, None], vertices, faces)
+        directions = away / length[:, None]
+        ray, distance, cosine = exits(centre, directions, vertices, faces)
+        depth_along_ray = wall_depth / np.maximum(cosine, least_cosine)
         room = np.full(len(walls), np.inf)
-        np.minimum.at(room, ray, distance - wall_depth / np.maximum(cosine, least_cosine))
+        np.minimum.at(room, ray, distance - depth_along_ray)
         nearer = np.clip(room / length, 0.0, 1.0)
         walls = centre + nearer[:, None] * (walls - centre)
     ends = np.cumsum([len(part.vertices) for part in parts])[:-1]
@@ -130,8 +132,10 @@ def _closed_skin(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integ
     faces = fitted.faces
     count = len(skin)
     sides = sides_of(faces)
-    numbers = sides.astype(np.int64)
-    has_other = np.isin(numbers @ [count, 1], numbers @ [1, count])
+    first, second = sides.T.astype(np.int64)
+    forward_keys = first * count + second
+    backward_keys = second * count + first
+    has_other = np.isin(forward_keys, backward_keys)
     border = sides[~has_other]
     group = pieces_of(border, count)[border[:, 0]]
     throat = mouth.points((0.0, -71.0, -10.0))  # 28 mm behind the throat
@@ -144,8 +148,7 @@ def _closed_skin(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integ
         if np.linalg.norm(np.ptp(points, axis=0)) < widest:
             continue
         goes_around = points[:, 1].min() < throat[1] < points[:, 1].max()
-        fans.append(
-            np.column_stack([edge[:, 1], edge[:, 0], np.full(len(edge), count + len(tips))])
-        )
+        tip = np.full(len(edge), count + len(tips))
+        fans.append(np.column_stack([edge[:, 1], edge[:, 0], tip]))
         tips.append(throat if goes_around else points.mean(axis=0))
     return np.vstack([skin, *tips]), np.vstack([faces, *fans])

@@ -122,8 +122,10 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     corners = sides_of(np.arange(faces.size).reshape(faces.shape))
     corners = np.take_along_axis(corners, np.argsort(sides, axis=1), axis=1)
     is_shared = uses[edge] == 2
-    both = corners[is_shared][np.argsort(edge[is_shared], kind="stable")].reshape(-1, 2, 2)
-    number = pieces_of(both.swapaxes(1, 2).reshape(-1, 2), faces.size)
+    by_edge = np.argsort(edge[is_shared], kind="stable")
+    ends = corners[is_shared][by_edge].reshape(-1, 2, 2)  # edge, triangle, end
+    links = ends.swapaxes(1, 2).reshape(-1, 2)  # corners of two triangles at one end of an edge
+    number = pieces_of(links, faces.size)
     _, first_corner = np.unique(number, return_index=True)
     parted = number.reshape(faces.shape)
     piece = pieces_of(parted, len(first_corner))
@@ -141,7 +143,8 @@ def _joined(
     edge = border_vertices(faces)
     more_edge = border_vertices(more_faces)
     joined_share = 2e-4  # relative to the size of both parts; `collapsed` moves borders by less
-    joined_distance = joined_share * float(np.ptp(np.vstack([vertices, more]), axis=0).max())
+    widths = np.ptp(np.vstack([vertices, more]), axis=0)
+    joined_distance = joined_share * float(widths.max())
     distance, nearest = scipy.spatial.cKDTree(vertices[edge]).query(more[more_edge])
     is_joined = distance < joined_distance
     number = np.full(len(more), -1, np.int32)

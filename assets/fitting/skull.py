@@ -110,9 +110,11 @@ def _under_skin(points: Floats64, free: Floats64, skin: Floats64, normals: Float
     pushed = np.clip(free / fade_depth, 0.0, 1.0) * (away[:, 0] < most_distance)
     weights *= (pushed / weights.sum(axis=1))[:, None]
     skin_thickness = 2.0  # [mm] on bone
-    out = ((points[:, None] - skin[near]) * normals[near]).sum(axis=2) + skin_thickness
-    inward = np.einsum("nk,nkc->nc", weights * np.maximum(out, 0.0), normals[near])
-    return np.asarray(points - inward)
+    from_skin = points[:, None] - skin[near]
+    height = (from_skin * normals[near]).sum(axis=2)
+    protruding = np.maximum(height + skin_thickness, 0.0)
+    push = np.einsum("nk,nkc->nc", weights * protruding, normals[near])
+    return np.asarray(points - push)
 
 
 def neck_sections(head: Any) -> list[Part]:
@@ -132,25 +134,23 @@ def neck_sections(head: Any) -> list[Part]:
         if edge[:, 1].max() < chin:
             centre = edge.mean(axis=0)
             points = np.concatenate([centre + fraction * (edge - centre) for fraction, _ in rings])
-            faces = grid_faces(np.arange(len(points)).reshape(len(rings), -1), closed=True)
+            rows = np.arange(len(points)).reshape(len(rings), -1)
+            faces = grid_faces(rows, closed=True)
             colours = np.repeat([colour for _, colour in rings], len(loop), axis=0)
             parts.append(_part("neck_section", points, faces, colours, "neck"))
     return parts
 
 
 def _part(name: str, points: Floats64, faces: Any, colours: Floats64, bone: str) -> Part:
-    places, normals, inks = (
-        each.astype(np.float32) for each in (points, vertex_normals(points, faces), colours)
-    )
     # Other parts move with the bone of the same name.
     bone_of_part = {"nose": "cranium", "throat": "cranium", "spine": "neck"}
     bone_shine = 0.28
     return Part(
         name=name,
-        vertices=places,
-        normals=normals,
+        vertices=points.astype(np.float32),
+        normals=vertex_normals(points, faces).astype(np.float32),
         faces=faces,
-        colours=inks,
+        colours=colours.astype(np.float32),
         bone=bone_of_part.get(bone, bone),
         shine=bone_shine,
     )

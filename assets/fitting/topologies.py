@@ -102,8 +102,10 @@ def recognised(mesh: Mesh) -> KnownHead | None:
 def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
     """Yield vertices and number of triangles of each piece, then of the whole mesh."""
     piece = pieces_of(mesh.faces, len(mesh.vertices))
-    triangles = np.bincount(piece[mesh.faces[:, 0]], minlength=int(piece.max()) + 1)
-    for group in sorted(vertices_of_pieces(piece, mesh.faces), key=len, reverse=True):
+    triangle_piece = piece[mesh.faces[:, 0]]
+    triangles = np.bincount(triangle_piece, minlength=int(piece.max()) + 1)
+    groups = vertices_of_pieces(piece, mesh.faces)
+    for group in sorted(groups, key=len, reverse=True):
         yield group, int(triangles[piece[group[0]]])
     same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
     yield same, len(mesh.faces)
