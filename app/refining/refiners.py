@@ -60,7 +60,8 @@ def refiner_for(
         # A refiner by name has none of these, because the graphics card cannot draw them.
         if refinement.refiner is None and options.get("scheme") == CUBIC_SCHEME:
             outlines, curves = rims_of(scene)
-            options["scheme"] = refine.CubicScheme(outlines, _backs_of_lids(scene), curves)
+            backs, covers = _sides_of_coarse_lids(scene)
+            options["scheme"] = refine.CubicScheme(outlines, backs, curves, covers)
         if splits is not None:
             options.pop("criterion", None)
             options["splits"] = splits
@@ -195,31 +196,35 @@ def _lip_lines(rings: Mapping[str, Integers32]) -> list[list[int]]:
     return [upper, lower]
 
 
-def _backs_of_lids(scene: Drawable) -> list[int]:
-    """Return the triangles on the inner sides of coarse eyelids, which face the eyeball.
+def _sides_of_coarse_lids(scene: Drawable) -> tuple[list[int], list[int]]:
+    """Return the triangles on the inner and the outer sides of coarse eyelids.
 
-    A margin of few large triangles would be shaded as a mean of both sides: it would have dark
-    spots. Small triangles are the dark line between shut lids.
+    Inner sides face the eyeball. A margin of few large triangles would be shaded as a mean of both
+    sides: it would have dark spots. Small triangles are the dark line between shut lids. Outer
+    sides cover the eyeball of a shut eye; large ones that bent inward would be pierced by it.
     """
     if scene.face is None:
-        return []
+        return [], []
     x = scene.rest_positions
     faces = scene.faces
     crosses = cross_products(x, faces)
     links = edges_of(faces)
     backs: list[int] = []
+    covers: list[int] = []
     for eye in scene.face.head.eyes:
         reach = eye.radius + 8.0  # [mm] from the eyeball's centre, with the thickness of a lid
         is_near = (np.linalg.norm(x - eye.centre, axis=1) < reach)[faces].all(axis=1)
         turned = (crosses * (x[faces].mean(axis=1) - eye.centre)).sum(axis=1) < 0.0
-        found = np.flatnonzero(is_near & turned)
-        margin = np.intersect1d(faces[found], faces[is_near & ~turned])
+        inner = np.flatnonzero(is_near & turned)
+        outer = np.flatnonzero(is_near & ~turned)
+        margin = np.intersect1d(faces[inner], faces[outer])
         at_margin = links[np.isin(links, margin).any(axis=1)]
         lengths = np.linalg.norm(np.diff(x[at_margin], axis=1)[:, 0], axis=1)
         coarse_edge = 4.2  # [mm], mean of the edges at a margin; that of the built-in head is 3.8
         if len(lengths) and lengths.mean() > coarse_edge:
-            backs += found.tolist()
-    return backs
+            backs += inner.tolist()
+            covers += outer.tolist()
+    return backs, covers
 
 
 def can_detail(scene: Drawable) -> bool:

@@ -36,13 +36,12 @@ import numpy as np
 from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned32
 from ...jit import njit
 from ..kahler.frame import SPLIT_EDGES, FrameBuffers
-from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..kahler.scheme import Scheme
 from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.creases import sectors_of, sharpened
 from ..mesh.fans import Fans, corners_behind, fans_around, fans_of
-from ..mesh.normals import cross_product, normalise, weigh_corners
+from ..mesh.normals import weigh_corners
 from ..mesh.threads import parallel_for
 from ..mesh.vectors import (
     HALF,
@@ -63,6 +62,7 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from .cubic_normals import cross_products, steepen_normals, weighted_normals
 
 START_POINT = 0
 MIDDLE_POINT = 1
@@ -99,6 +99,8 @@ class Tangents(NamedTuple):
     """Sectors at both ends of every edge, shape (E, 2); not used for edges on borders."""
     beyond: Unsigned32
     """The vertices before and after every border edge, shape (E, 2); not used for others."""
+    covers: Flags
+    """Inner edges that bend outward only, shape (E,)."""
 
 
 class CubicScheme(Scheme):
@@ -113,18 +115,22 @@ class CubicScheme(Scheme):
         outlines: Sequence[Sequence[int]] = (),
         backs: Sequence[int] = (),
         curves: Sequence[Sequence[int]] = (),
+        covers: Sequence[int] = (),
     ) -> None:
-        """Choose rims, and folds.
+        """Choose rims, folds, and covers.
 
         - `outlines`: vertices along rims within the surface, whose edges bend like borders. The
           first and the last edge of a rim only give their direction to their neighbours.
         - `backs`: triangles behind folds, as inner sides of lids. A vertex that they share with
           other triangles has the normal of the others: a mean of both sides is normal to neither.
         - `curves`: as `outlines`, but the surface is smooth across them, as across rims of ears.
+        - `covers`: triangles that cover a body, as lids cover eyeballs. Their edges bend outward
+          only, so a body that the triangles enclose does not pierce the refined surface.
         """
         self._outlines = [list(rim) for rim in outlines]
         self._rims = [*self._outlines, *(list(rim) for rim in curves)]
         self._backs = [int(triangle) for triangle in backs]
+        self._covers = [int(triangle) for triangle in covers]
 
     def outlined(self, connectivity: Connectivity) -> Flags:
         """Edges of the outlines, shape (E,)."""
@@ -133,6 +139,11 @@ class CubicScheme(Scheme):
     def is_back(self, connectivity: Connectivity) -> Flags:
         """Flags of triangles behind folds, shape (F,)."""
         return np.isin(np.arange(len(connectivity.faces)), self._backs)
+
+    def covering(self, connectivity: Connectivity) -> Flags:
+        """Edges of the covers, shape (E,)."""
+        edges = connectivity.triangle_edges[self._covers]
+        return np.isin(np.arange(len(connectivity.edges)), edges)
 
     def curved(self, connectivity: Connectivity) -> Flags:
         """Edges of the outlines and of the curves, shape (E,)."""
@@ -161,6 +172,7 @@ class CubicScheme(Scheme):
             off=(STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
             ends=sectors.edges[: len(mesh.edges)],
             beyond=follow_outlines(bent, follow_borders(mesh, rest_positions), self._rims),
+            covers=self.covering(mesh) & bent.around.is_interior,
         )
         # For shading, both sides of a crease are one surface, as in the input.
         self._normals = sector_normals
@@ -213,62 +225,6 @@ class CubicScheme(Scheme):
 
 
 @njit
-def cross_products(
-    first: int, last: int, positions: Floats64, faces: Unsigned32, crosses: Floats32
-) -> None:
-    """Write the normals of triangles times twice their areas, shape (F, 3)."""
-    for t in range(first, last):
-        write_row(crosses, t, cross_product(positions, faces[t, 0], faces[t, 1], faces[t, 2]))
-
-
-@njit
-def weighted_normals(
-    first: int,
-    last: int,
-    starts: Unsigned32,
-    corners: Unsigned32,
-    weights: Floats32,
-    crosses: Floats32,
-    normals: Floats32,
-) -> None:
-    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
-
-    starts, corners: the corners of triangles at each vertex, as in mesh/fans.py.
-    """
-    assert weights.shape[1] == crosses.shape[1] == normals.shape[1] == ROW_WIDTH
-    for k in range(first, last):
-        v = np.uint32(k)
-        total = ZERO, ZERO, ZERO
-        for corner in corners[starts[v] : starts[v + 1]]:
-            t = corner >> SIDE_BITS
-            weight = weights[t, corner & SIDE_MASK]
-            total = plus(total, times(weight, row_of(crosses, t)))
-        write_row(normals, v, total)
-    normalise(normals[first:last])
-
-
-@njit
-def steepen_normals(
-    first: int,
-    last: int,
-    starts: Unsigned32,
-    neighbours: Unsigned32,
-    normals: Floats32,
-    steeper: Floats32,
-    off: Floats32,
-) -> None:
-    """Write unit normals minus `off` times the sum around them, normalised, shape (V, 3)."""
-    assert normals.shape[1] == steeper.shape[1] == ROW_WIDTH
-    for k in range(first, last):
-        v = np.uint32(k)
-        total = ZERO, ZERO, ZERO
-        for neighbour in neighbours[starts[v] : starts[v + 1]]:
-            total = plus(total, row_of(normals, neighbour))
-        write_row(steeper, v, less(row_of(normals, v), off[v], total))
-    normalise(steeper[first:last])
-
-
-@njit
 def length_of(d: Vector) -> np.float32:
     """Length of an edge."""
     return np.float32(np.sqrt(dot(d, d)))
@@ -286,6 +242,15 @@ def write_cubic(displacements: Floats32, first: np.uint32, turn_a: Vector, turn_
     middle = times(MIDDLE_WEIGHT, less(turn_a, ONE, turn_b))
     write_row(displacements, np.uint32(first + MIDDLE_POINT), middle)
     write_row(displacements, np.uint32(first + END_POINT), near_b)
+
+
+@njit
+def remove_inward(displacements: Floats32, first: np.uint32, outward: Vector) -> None:
+    """Set displacements of an edge that point inward to zero; its three rows begin at `first`."""
+    for point in range(3):
+        row = np.uint32(first + point)
+        if dot(row_of(displacements, row), outward) < ZERO:
+            write_row(displacements, row, (ZERO, ZERO, ZERO))
 
 
 @njit
@@ -329,6 +294,10 @@ def displace_cubic(
             elif q == b:
                 turn_b = times(-ONE, turn_a)
         write_cubic(displacements, np.uint32(3 * e), turn_a, turn_b)
+        if tangents.covers[e]:
+            at_a = row_of(steeper, np.uint32(ends[e, 0]))
+            at_b = row_of(steeper, np.uint32(ends[e, 1]))
+            remove_inward(displacements, np.uint32(3 * e), plus(at_a, at_b))
 
 
 @njit

@@ -18,8 +18,10 @@ from risorius.assets.meshes import Mesh
 from risorius.bench.subjects import decimated
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
+from risorius.geometry.sides import edges_of
 
 from ...heads import UserHead
+from ...meshes import open_grid
 
 POINT_COUNT = 9
 
@@ -123,6 +125,58 @@ def test_shut_lids_of_few_triangles_have_no_dark_spots(head, tmp_path):
     cosines = np.einsum("tck,tk->tc", mesh.normals[mesh.triangles[lids]], turned[lids])
     assert cosines.size > 150
     assert cosines.min() > -0.2  # -0.8 by both sides
+
+
+def test_no_iris_pierces_a_shut_lid_of_few_triangles(head, tmp_path):
+    """Every point of the eyeballs' fronts is behind the refined skin of shut lids.
+
+    Flat lids of 1 300 triangles lie before the eyeball, but their refined edges bent inward below
+    the brow, and a pupil was seen.
+    """
+    points, faces = decimated(head.vertices, head.faces, 1300)
+    numbers = cKDTree(points).query(head.vertices[head.landmarks])[1]
+    scene = FaceScene(fit_head(*UserHead(Mesh(points, faces), numbers).write(tmp_path)))
+    refiner = refiner_for(scene, Refinement())
+    scene.pose({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
+    scene.step(1.0)
+    mesh = refiner.refine(scene.positions)
+    for eye in scene.head.eyes:
+        part = next(part for part in scene.head.parts if part.name == f"eyeball_{eye.name}")
+        away = part.vertices - eye.centre
+        is_front = (np.abs(away[:, :2]) < 4.0).all(axis=1) & (away[:, 2] > 0.0)
+        front = part.vertices[is_front].astype(np.float64)
+        assert len(front) > 10
+        front[:, 2] += 0.5  # `_is_hidden` lets points as near as this pass
+        assert _is_hidden(front, mesh.positions[mesh.triangles]).all()
+
+
+@pytest.mark.parametrize("is_valley", [True, False])
+def test_a_cover_bends_outward_only(is_valley):
+    """Edges across a valley stay straight if its triangles are covers; those of a ridge bend."""
+    flat = open_grid(6, 4)
+    x, y, _ = flat.vertices.T
+    height = 0.15 * (x - 3.0) ** 2
+    vertices = np.column_stack([x, y, height if is_valley else -height])
+    covers = range(len(flat.faces))
+    edges = edges_of(flat.faces)
+    splits = np.ones(len(edges), np.uint8)
+    plain, covered = (
+        refine.create("kahler", flat.faces, vertices, scheme=scheme, splits=splits)
+        for scheme in (refine.CubicScheme(), refine.CubicScheme(covers=covers))
+    )
+    a, b = plain.edges.T
+    is_inner = (y[a] == y[b]) & (y[a] > 0.0) & (y[a] < y.max())
+    chords = 0.5 * (vertices[a] + vertices[b])[is_inner]
+    bends = []
+    for refiner in (plain, covered):
+        points = refiner.refine(vertices).positions
+        nearest = cKDTree(points[:, :2]).query(chords[:, :2])[1]
+        bends.append(points[nearest, 2] - chords[:, 2])
+    assert (np.abs(bends[0]) > 0.02).any()
+    if is_valley:
+        assert np.abs(bends[1]).max() < 1e-6
+    else:
+        np.testing.assert_array_equal(bends[1], bends[0])
 
 
 @pytest.mark.parametrize(("other", "turn"), [(None, 12.0), (coarse_head, 18.0)])
