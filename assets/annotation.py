@@ -95,9 +95,10 @@ def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
         uv[number - FIRST_INNER] = place
         uv[other - FIRST_INNER] = place if other == number else _mirror_image(np.array(place))
     outline = table["outline"]
-    ends = [_evenly_spaced(np.array(outline[name]), LANE_COUNT) for name in ("inner", "outer")]
+    inner = _evenly_spaced(np.array(outline["inner"]), LANE_COUNT)
+    outer = _evenly_spaced(np.array(outline["outer"]), LANE_COUNT)
     fraction = np.linspace(0.0, 1.0, LANE_STEPS)[:, None]
-    left = ends[0][:, None] + fraction * (ends[1] - ends[0])[:, None]
+    left = inner[:, None] + fraction * (outer - inner)[:, None]
     lanes = np.stack([_mirror_image(left), left])
     return points_on_texture(uv), points_on_texture(lanes.reshape(-1, 2))
 
@@ -113,7 +114,8 @@ def _evenly_spaced(corners: Floats64, count: int) -> Floats64:
 
 def points_on_texture(uv: Floats64) -> SurfacePoints:
     """The surface points of the built-in head's skin at texture coordinates (n, 2)."""
-    return _texture().closest(np.hstack([uv, np.zeros((len(uv), 1))]))
+    level = np.zeros((len(uv), 1))
+    return _texture().closest(np.hstack([uv, level]))
 
 
 @lru_cache(maxsize=1)
@@ -136,15 +138,21 @@ def _with_brows(head: Head | Person, points: SurfacePoints) -> SurfacePoints:
     """Return the places, with brow points moved to the brows in the head's own picture."""
     corners = points.corners.copy()
     weights = points.weights.copy()
-    sides = ((Segment.RIGHT_BROW, -1.0, range(21, 16, -1)), (Segment.LEFT_BROW, 1.0, range(22, 27)))
-    for segment, side, numbers in sides:
+    # Landmarks run from the nose outward; the factor on x mirrors the right brow to the left.
+    brows = (
+        (Segment.RIGHT_BROW, -1.0, range(21, 16, -1)),
+        (Segment.LEFT_BROW, 1.0, range(22, 27)),
+    )
+    for segment, side, numbers in brows:
         rows, columns = np.nonzero(head.segments[::2, ::2] == segment)
         if len(rows) == 0:
             continue
         size = np.array(head.segments.shape)[::-1]
         pixels = 2.0 * np.column_stack([columns, rows]) + 0.5
-        found = points_on_texture(pixels / size * [1.0, -1.0] + [0.0, 1.0])
-        chosen = _along_brow(found.interpolate(head.vertices) * [side, 1.0, 1.0])
+        uv = pixels / size * [1.0, -1.0] + [0.0, 1.0]  # v runs upward
+        found = points_on_texture(uv)
+        as_left_brow = found.interpolate(head.vertices) * [side, 1.0, 1.0]
+        chosen = _along_brow(as_left_brow)
         at = np.array(numbers) - FIRST_INNER
         corners[at] = found.corners[chosen]
         weights[at] = found.weights[chosen]
@@ -167,7 +175,8 @@ def _along_brow(points: Floats64) -> Integers32:
             continue
         wanted = np.median(y[inside]) if number == 0 else y[inside].max()
         edge.append(inside[np.abs(y[inside] - wanted).argmin()])
-    edge[-1] = np.linalg.norm(points - points[edge[0]], axis=1).argmax()
+    from_inner_end = np.linalg.norm(points - points[edge[0]], axis=1)
+    edge[-1] = from_inner_end.argmax()
     along = arc_lengths(points[edge])
     stations = np.linspace(0.0, along[-1], 5)
     nearest = np.abs(along[:, None] - stations).argmin(axis=0)

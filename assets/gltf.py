@@ -342,7 +342,8 @@ def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integer
         own = [piece for piece in pieces if piece.node == node]
         start = starts[next(n for n, piece in enumerate(pieces) if piece.node == node)]
         motion = np.vstack([piece.motion for piece in own])
-        motion[:, :3] /= max(abs(motion[:, :3]).max(initial=0.0), 1e-300)
+        farthest = abs(motion[:, :3]).max(initial=0.0)
+        motion[:, :3] /= max(farthest, 1e-300)
         yield start + _first_of_same(np.vstack([piece.stored for piece in own]), motion)
 
 

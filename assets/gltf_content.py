@@ -209,7 +209,8 @@ class _Decompression:
         kind = np.dtype(TYPE_OF_COMPONENT[accessor["componentType"]])
         stored = np.ascontiguousarray(rows.reshape(len(rows), -1).astype(kind))
         if "min" in accessor and len(stored):  # Draco rounds places, and so moves their bounds
-            accessor.update(min=stored.min(axis=0).tolist(), max=stored.max(axis=0).tolist())
+            accessor["min"] = stored.min(axis=0).tolist()
+            accessor["max"] = stored.max(axis=0).tolist()
         width = stored.shape[1] * kind.itemsize
         view: dict[str, Any] = {}
         if stored.shape[1] > 1 and width % 4:

@@ -115,7 +115,9 @@ def _transformed_uv(uv: Floats64, placing: Mapping[str, Any]) -> Floats64:
     """
     scaled = uv[:, :2] * placing.get("scale", (1.0, 1.0))
     angle = float(placing.get("rotation", 0.0))
-    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    cosine = np.cos(angle)
+    sine = np.sin(angle)
+    turn = np.array([[cosine, sine], [-sine, cosine]])
     return np.asarray(scaled @ turn.T + placing.get("offset", (0.0, 0.0)))
 
 

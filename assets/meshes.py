@@ -183,7 +183,11 @@ def _read_by_trimesh(content: bytes, suffix: str) -> tuple[Any, Any]:
         io.BytesIO(text), file_type=suffix, process=False, maintain_order=True
     )
     pieces: list[Any] = [each for each in scene.dump() if hasattr(each, "faces")]
-    starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
-    faces = [each.faces.reshape(-1, 3) + n for each, n in zip(pieces, starts, strict=False)]
-    vertices = np.vstack([np.zeros((0, 3)), *(each.vertices for each in pieces)])
-    return vertices, np.vstack([np.zeros((0, 3), np.int64), *faces])
+    vertices = [np.zeros((0, 3))]
+    faces = [np.zeros((0, 3), np.int64)]
+    count = 0
+    for piece in pieces:
+        vertices.append(piece.vertices)
+        faces.append(piece.faces.reshape(-1, 3) + count)
+        count += len(piece.vertices)
+    return np.vstack(vertices), np.vstack(faces)

@@ -24,8 +24,10 @@ def lit_nostrils(occlusion: Image, rims: Iterable[Floats32]) -> Image:
         reach = 1.25 * float(np.linalg.norm(rim - middle, axis=1).max())
         across = (np.arange(width) + 0.5) / width - middle[0]
         down = 1.0 - (np.arange(height) + 0.5) / height - middle[1]
-        near = np.exp(-(((across**2 + down[:, None] ** 2) / reach**2) ** 3))
-        lit += near * inner_light * (1.0 - lit / 255.0) ** 2
+        squared_distance = across**2 + down[:, None] ** 2
+        near = np.exp(-((squared_distance / reach**2) ** 3))
+        darkness = 1.0 - lit / 255.0
+        lit += near * inner_light * darkness**2
     found = np.rint(np.minimum(lit, 255.0)).astype(np.uint8)
     found.flags.writeable = False
     return found

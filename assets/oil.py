@@ -77,9 +77,12 @@ def _mixed(points: Floats64, places: Floats64, amounts: Floats64, blur: float) -
     The weights fall with the fourth power of the distance (Shepard 1968, "A two-dimensional
     interpolation function for irregularly-spaced data"), but hardly within `blur` [mm].
     """
-    apart = np.square(points).sum(axis=1)[:, None] + np.square(places).sum(axis=1)
-    squared = np.maximum(apart - 2.0 * points @ places.T, 0.0)
-    weights = 1.0 / np.square(squared + blur**2)
+    # |p - q|^2 = |p|^2 + |q|^2 - 2 p q
+    point_squares = np.square(points).sum(axis=1)
+    place_squares = np.square(places).sum(axis=1)
+    squares = point_squares[:, None] + place_squares
+    squared_distances = np.maximum(squares - 2.0 * points @ places.T, 0.0)
+    weights = 1.0 / np.square(squared_distances + blur**2)
     return np.asarray(weights @ amounts / weights.sum(axis=1))
 
 

@@ -73,10 +73,13 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[MeshPictures | None, 
     picture[(surface.face_uv < 0).any(axis=1)] = -1
     placings = sorted({each.placing for each in used})
     uv = np.vstack([placing.placed(surface.uv) for placing in placings])
-    rows = np.array([placings.index(each.placing) for each in used])[np.maximum(picture, 0)]
+    # Each placing has its own copy of the texture coordinates.
+    copy_of_picture = np.array([placings.index(each.placing) for each in used])
+    copies = copy_of_picture[np.maximum(picture, 0)]
+    face_uv = np.maximum(surface.face_uv, 0) + len(surface.uv) * copies[:, None]
     texture = MeshPictures(
         uv.astype(np.float32),
-        (np.maximum(surface.face_uv, 0) + len(surface.uv) * rows[:, None]).astype(np.int32),
+        face_uv.astype(np.int32),
         picture,
         tuple(partial(_read_picture, folder, each.name) for each in used),
     )
@@ -174,7 +177,8 @@ def _basis_picture(content: bytes, name: str) -> Image:
 def tinted(picture: Image, factor: Sequence[float]) -> Image:
     """A picture, multiplied by a factor of linear light for red, green and blue."""
     shades = to_linear(np.arange(256) / 255.0)
-    table = np.rint(255.0 * to_screen(shades[:, None] * np.asarray(factor))).astype(np.uint8)
+    screen = to_screen(shades[:, None] * np.asarray(factor))
+    table = np.rint(255.0 * screen).astype(np.uint8)
     channels = [table[picture[..., channel], channel] for channel in range(3)]
     return np.stack(channels, axis=-1)
 

@@ -142,7 +142,8 @@ class _Bytes:
 
     def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
         """Read the next `count` rows of numbers of some kinds; return them by columns."""
-        rows = np.dtype([(str(place), self._order + kind) for place, kind in enumerate(kinds)])
+        columns = [(str(place), self._order + kind) for place, kind in enumerate(kinds)]
+        rows = np.dtype(columns)
         found = self._rows(rows, count)
         return [found[name] for name in rows.names or ()]
 
@@ -192,7 +193,9 @@ def _table(element: _Element, lengths: list[int], body: _Numbers | _Bytes) -> di
     """All rows at once, if all their lists have these lengths; else None."""
     kinds = []
     for each, length in zip(element.properties, lengths, strict=True):
-        kinds += [*([] if each.length is None else [each.length]), *[each.kind] * length]
+        if each.length is not None:
+            kinds.append(each.length)
+        kinds += [each.kind] * length
     try:
         found = body.table(kinds, element.count)
     except ValueError:  # other lists are too short
@@ -206,7 +209,9 @@ def _table(element: _Element, lengths: list[int], body: _Numbers | _Bytes) -> di
         if (sizes != length).any():
             return None
         values = [found.pop(0) for _ in range(length)]
-        columns[each.name] = _Lists(sizes, np.column_stack([sizes, *values])[:, 1:].ravel())
+        # The column of sizes keeps the number of rows where the lists are empty.
+        rows = np.column_stack([sizes, *values])[:, 1:]
+        columns[each.name] = _Lists(sizes, rows.ravel())
     return columns
 
 
@@ -223,7 +228,9 @@ def _fan_triangles(polygons: _Lists) -> Integers64:
     starts = np.cumsum(polygons.lengths) - polygons.lengths
     counts = np.maximum(polygons.lengths - 2, 0)
     first = np.repeat(starts, counts)
-    second = first + np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    earlier = np.repeat(np.cumsum(counts) - counts, counts)  # triangles of earlier polygons
+    number = np.arange(counts.sum()) - earlier  # of a triangle in its polygon
+    second = first + number + 1
     corners = np.stack([first, second, second + 1], axis=1)
     triangles: Integers64 = polygons.values[corners]
     return triangles

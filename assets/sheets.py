@@ -23,8 +23,10 @@ def make_grid(columns: int, rows: int, cell: float) -> tuple[Floats64, Integers3
     y = cell * (np.arange(rows + 1) - rows / 2)
     vertices = np.stack(np.meshgrid(x, y, [0.0]), axis=-1).reshape(-1, 3)
 
-    by_column = grid_faces(np.arange(len(vertices)).reshape(rows + 1, columns + 1).T)
-    faces = by_column.reshape(columns, rows, -1).swapaxes(0, 1).reshape(-1, 3)
+    numbers = np.arange(len(vertices)).reshape(rows + 1, columns + 1)
+    by_column = grid_faces(numbers.T).reshape(columns, rows, -1)
+    by_row = by_column.swapaxes(0, 1)
+    faces = by_row.reshape(-1, 3)
 
     vertices.flags.writeable = False
     faces.flags.writeable = False

@@ -17,7 +17,9 @@ def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
 def shrunk(values: Floats32, shrink: int) -> Floats32:
     """Means over blocks of `shrink` x `shrink` values (H, W, ...); H and W are multiples of it."""
     for axis in (0, 1):
-        count = values.shape[axis] // shrink
-        blocks = np.moveaxis(values, axis, 0).reshape(count, shrink, *np.delete(values.shape, axis))
-        values = np.moveaxis(blocks.mean(axis=1, dtype=np.float32), 0, axis)
+        rows = np.moveaxis(values, axis, 0)
+        count = len(rows) // shrink
+        blocks = rows.reshape(count, shrink, *rows.shape[1:])
+        means = blocks.mean(axis=1, dtype=np.float32)
+        values = np.moveaxis(means, 0, axis)
     return np.ascontiguousarray(values)

@@ -65,8 +65,12 @@ def nearest_weights(targets: Floats32, displacements: Floats64, curves: Floats64
     products = rows @ rows.T
     least = trust * np.trace(products) / len(products)
     corner = np.linalg.cholesky(products + least * np.eye(len(products)))
-    wanted = displacements.reshape(len(displacements), -1) @ rows.T + least * curves
+    frames = displacements.reshape(len(displacements), -1)
+    wanted = frames @ rows.T + least * curves
     reduced = scipy.linalg.solve_triangular(corner, wanted.T, lower=True).T
-    found = [scipy.optimize.lsq_linear(corner.T, each, (0.0, 1.0), "bvls").x for each in reduced]
+    found = []
+    for frame in reduced:
+        fit = scipy.optimize.lsq_linear(corner.T, frame, (0.0, 1.0), "bvls")
+        found.append(fit.x)
     weights: Floats64 = np.clip(found, 0.0, 1.0)
     return weights

@@ -110,13 +110,16 @@ class Sums:
         length = np.linalg.norm(displacement, axis=1)
         is_moved = length > 0.2 * length.max(initial=0.0)
         areas = self._areas * is_moved
-        square = float((areas * off**2).sum() / max(float(areas.sum()), 1e-12))
-        return Difference(names, float(off.max(initial=0.0)), float(np.sqrt(square)))
+        area = max(float(areas.sum()), 1e-12)
+        mean_square = float((areas * off**2).sum() / area)
+        greatest = float(off.max(initial=0.0))
+        return Difference(names, greatest, float(np.sqrt(mean_square)))
 
     def shared(self, first: str, second: str) -> float:
         """Return how much skin two shapes both move [mm^4], to compare pairs."""
-        lengths = [np.linalg.norm(self._displacements[name], axis=1) for name in (first, second)]
-        return float((self._areas * lengths[0] * lengths[1]).sum())
+        by_first = np.linalg.norm(self._displacements[first], axis=1)
+        by_second = np.linalg.norm(self._displacements[second], axis=1)
+        return float((self._areas * by_first * by_second).sum())
 
 
 def table(

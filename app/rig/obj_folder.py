@@ -119,8 +119,10 @@ def _with_lips_cut(text: bytes, cut: LipCut, count: int) -> bytes:
         """Return the line of the next vertex, or of a polygon."""
         if found[1] == b"v":
             rows.append(found[0].rstrip())
-            is_last = len(rows) == count
-            return b"\n".join([rows[-1], *(rows[each] for each in new)]) if is_last else found[0]
+            if len(rows) != count:
+                return found[0]
+            doubled = [rows[vertex] for vertex in new]
+            return b"\n".join([rows[-1], *doubled])
         numbers = []
         others = []
         for corner in found[2].split():

@@ -177,9 +177,9 @@ def _is_on_face(
     distance: distances of the points from the skin [mm], (n,). landmarks: [mm], (68, 3).
     """
     face = landmarks[FACE_LANDMARKS]
-    is_on_face = (centre > face.min(axis=0) - FACE_MARGIN) & (
-        centre < face.max(axis=0) + FACE_MARGIN
-    )
+    low = face.min(axis=0) - FACE_MARGIN
+    high = face.max(axis=0) + FACE_MARGIN
+    is_on_face = (centre > low) & (centre < high)
     # Glasses span both eyes and hang in front of them.
     is_in_front = np.ptp(points[:, 0]) > 60.0 and np.median(distance) > 5.0
     # Lashes are shorter than 20 mm.
@@ -191,13 +191,13 @@ def _is_beard(points: Floats64, centre: Floats64, landmarks: Floats64) -> bool:
     low = points.min(axis=0)
     high = points.max(axis=0)
     jaw_line = landmarks[:17]
-    is_low = (
-        low[1] < landmarks[LOWER_LIP_LANDMARK, 1] and high[1] < landmarks[NOSE_BRIDGE_LANDMARK, 1]
-    )
+    lip, bridge, chin = landmarks[[LOWER_LIP_LANDMARK, NOSE_BRIDGE_LANDMARK, CHIN_LANDMARK]]
+    is_low = low[1] < lip[1] and high[1] < bridge[1]
     below_chin = 15.0  # [mm] from the chin down to the top of a goatee; clothes begin lower
-    is_low = is_low and high[1] > landmarks[CHIN_LANDMARK, 1] - below_chin
-    is_ahead = low[2] > jaw_line[:, 2].min() - 30.0 and centre[2] > jaw_line[:, 2].mean()
-    is_central = abs(centre[0] - landmarks[CHIN_LANDMARK, 0]) < 15.0
+    is_low = is_low and high[1] > chin[1] - below_chin
+    ear_depth = jaw_line[:, 2].min() - 30.0  # [mm]
+    is_ahead = low[2] > ear_depth and centre[2] > jaw_line[:, 2].mean()
+    is_central = abs(centre[0] - chin[0]) < 15.0
     return bool(is_low and is_ahead and is_central)
 
 

@@ -52,9 +52,11 @@ def without_head_pose(skin: Floats64, cranium: Floats64, weights: Floats64) -> F
     """Remove the cranium's motion from skin (V, 3) that follows it by `weights` (V,)."""
     if np.array_equal(cranium, np.eye(4)):
         return skin
-    turns = np.eye(3) + weights[:, None, None] * (cranium[:3, :3] - np.eye(3))
-    unmoved = (skin - weights[:, None] * cranium[:3, 3])[:, :, None]
-    return np.asarray(np.linalg.solve(turns, unmoved)[:, :, 0])
+    rotation = cranium[:3, :3]
+    shift = cranium[:3, 3]
+    turns = np.eye(3) + weights[:, None, None] * (rotation - np.eye(3))
+    unshifted = skin - weights[:, None] * shift
+    return np.asarray(np.linalg.solve(turns, unshifted[:, :, None])[:, :, 0])
 
 
 def rest_in(scene: FaceScene, values: Mapping[str, float]) -> FacePose:

@@ -61,7 +61,8 @@ def add_mesh(
         return glb.sparse(values[vertices].astype(np.float32))
 
     def of_vertices(values: npt.NDArray[Any], *, is_bounded: bool = False) -> int:
-        rows = values[vertices].astype(values.dtype if values.dtype == np.uint8 else np.float32)
+        kind = np.uint8 if values.dtype == np.uint8 else np.float32
+        rows = values[vertices].astype(kind)
         return glb.accessor(rows, ARRAY_BUFFER, is_bounded=is_bounded)
 
     attributes = {
@@ -147,7 +148,8 @@ def _normal_map(
     for axis, direction in enumerate((right, across)):
         normals[:, axis] = -(rises * direction[texels.faces]).sum(axis=1)
     normals = unit_vectors(normals)
-    image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
+    height, width = fine.slopes.shape[:2]
+    image = np.full((height, width, 3), (128, 128, 255), np.uint8)  # of a flat surface
     image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)
     return image
 
@@ -163,8 +165,11 @@ def _resting_slopes(
     amounts = wrinkles.resting[:, None] * readiness  # (V, 2)
     first, second = texels.interpolate(amounts[surface.faces].astype(np.float64)).T
     scale = len(wrinkles.map) / size
-    rows, columns = ((scale * (each + 0.5)).astype(int) for each in (texels.rows, texels.columns))
+    rows = (scale * (texels.rows + 0.5)).astype(int)
+    columns = (scale * (texels.columns + 0.5)).astype(int)
     found = wrinkles.map[rows, columns].astype(np.float64)
-    amount = first + found[:, 3] / 255.0 * (second - first)
+    share_of_second = found[:, 3] / 255.0
+    amount = first + share_of_second * (second - first)
+    levels = found[:, :2] - 128.0
     steepest = wrinkles.steepest / 127.0
-    return np.asarray(amount[:, None] * (found[:, :2] - 128.0) * steepest)
+    return np.asarray(amount[:, None] * levels * steepest)

@@ -120,7 +120,8 @@ def _choose_greedily(
     left = along.copy()
     found: list[tuple[str, str]] = []
     while len(found) < min(count, len(pairs)):
-        taken = (2.0 * products * left - products**2 * np.diag(lengths)).sum(axis=0)
+        reductions = 2.0 * products * left - products**2 * np.diag(lengths)  # in each frame
+        taken = reductions.sum(axis=0)
         taken[[pairs.index(pair) for pair in found]] = -np.inf
         best = int(taken.argmax())
         if taken[best] <= 0.0:

@@ -10,7 +10,7 @@ import scipy
 
 from risorius.assets.fitting import FittedHead
 from risorius.assets.gltf_file import GltfFile
-from risorius.geometry.arrays import Floats64
+from risorius.geometry.arrays import Flags, Floats64
 
 from ..files import folder_atomically, written_atomically
 from .avatar import Avatar, FileHead, PrintLine, RigRequest, avatar_of
@@ -111,14 +111,12 @@ def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
     """Add the mesh of a file; eyeballs may be separate nodes. Returns the indices of the nodes."""
     assert file.painted is not None
     writer = FileMeshWriter(glb, file.painted, file.head.to_millimetres, avatar.shapes[0])
-    faces = file.body.faces
-    hidden = [piece.vertices for piece in file.pieces if piece.role == "hidden"]
-    is_left = ~np.isin(faces[:, 0], np.concatenate([np.empty(0, np.int64), *hidden]))
+    is_left = ~_is_of_role(file, "hidden")
     nodes = []
     back = file.head.to_millimetres.inverse
-    for eye, pivot in file.body.pivots.items() if avatar.eyes_are_nodes else ():
-        own = np.concatenate([each.vertices for each in file.pieces if each.role == eye])
-        is_own = np.isin(faces[:, 0], own)
+    pivots = file.body.pivots if avatar.eyes_are_nodes else {}
+    for eye, pivot in pivots.items():
+        is_own = _is_of_role(file, eye)
         is_left &= ~is_own
         centre = back.points(pivot)
         node = {
@@ -130,6 +128,15 @@ def _add_file_mesh(glb: Glb, avatar: Avatar, file: FileHead) -> list[int]:
         nodes.append(glb.add("nodes", node))
     mesh = writer.add(avatar.names, is_left)
     return [glb.add("nodes", {"name": "head", "mesh": mesh}), *nodes]
+
+
+def _is_of_role(file: FileHead, role: str) -> Flags:
+    """Return flags of the triangles of a file that belong to pieces with a role, (F,)."""
+    is_vertex = np.zeros(len(file.body.rest), np.bool_)
+    for piece in file.pieces:
+        if piece.role == role:
+            is_vertex[piece.vertices] = True
+    return is_vertex[file.body.faces[:, 0]]
 
 
 def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
