@@ -89,12 +89,14 @@ def read_words() -> Mapping[str, Any]:
 
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     """Read parts from shared arrays, in which they follow each other: npz entries are slow."""
-    of_vertex, of_face = (np.cumsum(arrays[f"part_{of}_counts"])[:-1] for of in ("vertex", "face"))
-    names = "vertices", "normals", "colours", "roots", "mandible_shares"
-    vertices, normals, colours, roots, shares = (
-        np.split(arrays[f"part_{name}"], of_vertex) for name in names
-    )
-    faces = np.split(arrays["part_faces"], of_face)
+    vertex_ends = np.cumsum(arrays["part_vertex_counts"])[:-1]
+    face_ends = np.cumsum(arrays["part_face_counts"])[:-1]
+    vertices = np.split(arrays["part_vertices"], vertex_ends)
+    normals = np.split(arrays["part_normals"], vertex_ends)
+    colours = np.split(arrays["part_colours"], vertex_ends)
+    roots = np.split(arrays["part_roots"], vertex_ends)
+    shares = np.split(arrays["part_mandible_shares"], vertex_ends)
+    faces = np.split(arrays["part_faces"], face_ends)
     return tuple(
         Part(
             name=name,

@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned8
+from ..geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned8
 from ..geometry.read_only import make_read_only
 from .errors import AssetError
 from .gltf import read_gltf
@@ -59,6 +59,18 @@ class Mesh:
 
     def __post_init__(self) -> None:
         make_read_only(self)
+
+    @property
+    def file_corners(self) -> Integers32:
+        """Triangles with the vertex indices of the file, even if vertices coincide, (F, 3)."""
+        return self.faces if self.corners is None else self.corners
+
+    @property
+    def used_vertices(self) -> Integers64:
+        """For each vertex of the file, the vertex that `faces` use for it, (V,)."""
+        if self.same is None:
+            return np.arange(len(self.vertices))
+        return np.asarray(self.same, np.int64)
 
     def without(self, triangles: npt.NDArray[np.integer[Any]]) -> Self:
         """Return the mesh without the flagged triangles; vertices keep their indices."""

@@ -188,11 +188,16 @@ def looks_of(content: bytes) -> dict[str, MaterialLook]:
             material = rest
             looks[material] = MaterialLook()
         elif word == "Kd" and len(numbers) >= 3:
-            red, green, blue = (min(max(each, 0.0), 1.0) for each in numbers[:3])
+            red, green, blue = (_fraction(each) for each in numbers[:3])
             looks[material] = replace(look, colour=(red, green, blue))
         elif word == "d" and numbers:
-            looks[material] = replace(look, opacity=min(max(numbers[-1], 0.0), 1.0))
+            looks[material] = replace(look, opacity=_fraction(numbers[-1]))
     return looks
+
+
+def _fraction(value: float) -> float:
+    """Bound a number to 0 to 1."""
+    return min(max(value, 0.0), 1.0)
 
 
 @dataclass(frozen=True, order=True)

@@ -128,10 +128,12 @@ class FileBody:
         """
         points = self.rest[indices]
         weights = np.clip((self._lip_height - points[:, 1]) / LIP_HEIGHT + 0.5, 0.0, 1.0)
-        depth = points[:, 2] - points[:, 2].min()
+        from_throat = points[:, 2] - points[:, 2].min()
+        farthest = max(float(from_throat.max()), 1e-9)
         # At the throat the weight is 0.
-        weights *= np.clip(2.0 * depth / max(float(depth.max()), 1e-9), 0.0, 1.0)
-        moved: Floats64 = points + weights[:, None] * (moved_points(mandible, points) - points)
+        weights *= np.clip(2.0 * from_throat / farthest, 0.0, 1.0)
+        with_mandible = moved_points(mandible, points)
+        moved: Floats64 = points + weights[:, None] * (with_mandible - points)
         return moved
 
     def _attached(self, head: FittedHead) -> SkinPart:
@@ -200,7 +202,7 @@ class _Bag:
 
 def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
     """Return, for each vertex of a file, the first vertex that coincides with it, (V,)."""
-    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.array(mesh.same, np.int64)
+    same = mesh.used_vertices
     landmarks = head.file_vertices[head.landmarks]
     joined, _ = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
     first = np.arange(len(same))

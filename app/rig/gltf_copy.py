@@ -149,8 +149,8 @@ class GltfShapes:
             if targets:
                 has_normals = has_normals and "NORMAL" in targets[0]
             count = self._document["accessors"][primitive["attributes"]["POSITION"]]["count"]
-            still = _Changes(*[np.zeros((len(names), count, 3), np.float32)] * 2)
-            own = changes.get(place, still)
+            none = np.zeros((len(names), count, 3), np.float32)
+            own = changes.get(place, _Changes(none, none))
             for moved, bent in zip(own.places, own.normals, strict=True):
                 target = {"POSITION": self._glb.sparse(moved)}
                 if has_normals:
@@ -162,7 +162,9 @@ class GltfShapes:
         added = [name + NAME_SUFFIX if name in known else name for name in names]
         written["targetNames"] = [*known, *added]
         written.update(extras)
-        mesh["weights"] = [*mesh.get("weights", [0.0] * old), *[0.0] * len(names)]
+        old_weights = mesh.get("weights", [0.0] * old)
+        new_weights = [0.0] * len(names)
+        mesh["weights"] = [*old_weights, *new_weights]
         self._weigh_nodes(number, old, len(names))
 
     def _weigh_nodes(self, mesh: int, old: int, added: int) -> None:

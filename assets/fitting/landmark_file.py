@@ -65,7 +65,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[Integers32, Floats64 | None]
         if _are_indices(found):
             indices = _indices(found, len(mesh.vertices))
             # Triangles use only one of several coinciding vertices.
-            return indices if mesh.same is None else mesh.same[indices].astype(np.int32), None
+            return mesh.used_vertices[indices].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:
@@ -174,8 +174,9 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
     """Find the vertices nearest to points, (68,); a point off the mesh raises AssetError."""
     triangles, distance = _triangles_at(points, mesh, mesh.faces)
     greatest_ratio = 0.05  # greatest distance from the mesh / distance of the outer eye corners
-    outer_eye_corners = [36, 45]
-    allowed = greatest_ratio * float(np.linalg.norm(np.diff(points[outer_eye_corners], axis=0)))
+    right_eye_corner, left_eye_corner = points[[36, 45]]
+    eye_distance = float(np.linalg.norm(left_eye_corner - right_eye_corner))
+    allowed = greatest_ratio * eye_distance
     off = distance > allowed
     if off.any():
         place = int(distance.argmax())
@@ -192,8 +193,10 @@ def _nearest(points: Floats64, mesh: Mesh) -> Integers32:
         )
     # Points near an eye may lie on a lash or on the eyeball, but most points lie on the skin.
     piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]
-    skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
-    if _triangles_at(points, mesh, skin)[1].max() > allowed:
+    skin_piece = np.bincount(piece[triangles]).argmax()
+    skin = mesh.faces[piece == skin_piece]
+    _, from_skin = _triangles_at(points, mesh, skin)
+    if from_skin.max() > allowed:
         skin = mesh.faces
     indices = nearest_vertices(points, mesh.vertices, skin)
     joined, _ = with_seams_joined(mesh.vertices, skin, indices)
@@ -218,12 +221,11 @@ def nearest_vertices(points: Floats64, vertices: Floats64, faces: Integers32) ->
     used = np.unique(faces)
     _, nearest = scipy.spatial.cKDTree(vertices[used]).query(points)
     indices: Integers32 = used[nearest].astype(np.int32)
-    to_upper, to_lower = (
-        path_lengths(vertices, faces, indices[list(lip)]).min(axis=0) for lip in OUTER_LIP_LANDMARKS
-    )
-    for lip, is_own in zip(
-        INNER_LIP_LANDMARKS, (to_upper < to_lower, to_lower < to_upper), strict=True
-    ):
+    outer_upper, outer_lower = (indices[list(lip)] for lip in OUTER_LIP_LANDMARKS)
+    to_upper = path_lengths(vertices, faces, outer_upper).min(axis=0)
+    to_lower = path_lengths(vertices, faces, outer_lower).min(axis=0)
+    is_of_lip = (to_upper < to_lower, to_lower < to_upper)
+    for lip, is_own in zip(INNER_LIP_LANDMARKS, is_of_lip, strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
             _, nearest = scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])

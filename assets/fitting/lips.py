@@ -80,13 +80,12 @@ class LipCut:
     def applied(self, mesh: Mesh) -> Mesh:
         """Cut the mesh of the file."""
         count = len(mesh.vertices)
-        corners = mesh.faces if mesh.corners is None else mesh.corners
+        corners = mesh.file_corners.copy()
         rows = np.flatnonzero(self.is_below(corners))
         new_index = np.arange(count)
         new_index[self.sources] = count + np.arange(len(self.sources))
-        corners = corners.copy()
         corners[rows] = new_index[corners[rows]]
-        same = np.arange(count) if mesh.same is None else np.asarray(mesh.same)
+        same = mesh.used_vertices
         # New vertices that coincide are merged.
         _, first, number = np.unique(same[self.sources], return_index=True, return_inverse=True)
         same = np.concatenate([same, count + first[number]])
@@ -138,8 +137,8 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
         centroid = mesh.vertices[mesh.faces[part]].mean(axis=(0, 1))
         heights.append(float(centroid @ up))
     below = parts[int(np.argmin(heights))]
-    corners = mesh.faces if mesh.corners is None else mesh.corners
-    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
+    corners = mesh.file_corners
+    same = mesh.used_vertices
     used = np.unique(corners[below])
     sources = used[np.isin(same[used], inner)]
     indices = indices.copy()

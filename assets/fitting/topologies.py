@@ -23,7 +23,7 @@ import numpy as np
 from ...folders import configuration_folder
 from ...geometry.arrays import Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
-from ...geometry.sides import sides_of
+from ...geometry.sides import side_lengths, sides_of
 from ...schema import Record, Within, parsed_json, read
 from ..data_files import read_toml
 from ..errors import AssetError
@@ -107,19 +107,19 @@ def _candidates(mesh: Mesh) -> Iterator[tuple[Integers, int]]:
     groups = vertices_of_pieces(piece, mesh.faces)
     for group in sorted(groups, key=len, reverse=True):
         yield group, int(triangles[piece[group[0]]])
-    same = np.arange(len(mesh.vertices)) if mesh.same is None else np.asarray(mesh.same)
-    yield same, len(mesh.faces)
+    yield mesh.used_vertices, len(mesh.faces)
 
 
 def _has_edges(mesh: Mesh, indices: Integers, topology: Topology) -> bool:
     """Whether the mesh has all edges of a topology, with about the expected lengths."""
     if not topology.edges:
         return True
-    first, second = indices[[edge[:2] for edge in topology.edges]].T
+    edges = indices[[edge[:2] for edge in topology.edges]]
+    first, second = edges.T
     ratio = np.array([edge[2] for edge in topology.edges])
     right, left = indices[topology.landmarks][list(OUTER_EYE_CORNERS)]
     width = float(np.linalg.norm(mesh.vertices[right] - mesh.vertices[left]))
-    length = np.linalg.norm(mesh.vertices[first] - mesh.vertices[second], axis=1)
+    length = side_lengths(mesh.vertices, edges)
     most_off = 3.0  # greatest factor between lengths on different faces
     is_like = (length < most_off * ratio * width) & (length * most_off > ratio * width)
     count = len(mesh.vertices)

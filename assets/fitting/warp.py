@@ -84,7 +84,8 @@ class ThinPlateSpline:
         [unit of `source`]; with more smoothing, points may miss their targets by more. If all
         points lie in one plane, raises LinAlgError.
         """
-        first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
+        _, first = np.unique(source.round(6), axis=0, return_index=True)
+        first = np.sort(first)
         self._source = np.asarray(source[first], dtype=np.float64)
         low = self._source.min(axis=0)
         high = self._source.max(axis=0)
@@ -110,7 +111,8 @@ class ThinPlateSpline:
     def points(self, points: npt.ArrayLike) -> Floats64:
         """Deform points (n, 3)."""
         places = np.array(points, dtype=np.float64, order="C")
-        moved: Floats64 = self._affine[0] + (places - self._middle) / self._half @ self._affine[1:]
+        relative = (places - self._middle) / self._half
+        moved: Floats64 = self._affine[0] + relative @ self._affine[1:]
         subtract_distances(places, self._points, self._pulls, moved)
         return moved
 
