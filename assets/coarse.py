@@ -53,7 +53,8 @@ def coarse_head() -> CoarseHead:
     number[kept] = np.arange(len(kept))
     # Its lids have no lashes, and no map shows form finer than its triangles.
     parts = tuple(_behind_lids(known, part) for part in known.parts if part.roots is None)
-    still = replace(known.wrinkles, across=np.zeros((len(kept), 2, 3), np.float32))
+    no_directions = np.zeros((len(kept), 2, 3), np.float32)
+    still = replace(known.wrinkles, across=no_directions)
     return CoarseHead(
         vertices=known.vertices[kept],
         faces=faces,

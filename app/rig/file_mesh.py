@@ -52,11 +52,13 @@ def split_vertices(painted: PaintedMesh) -> SplitVertices:
     """Split vertices whose texture coordinates or normals differ."""
     mesh = painted.mesh
     count = len(mesh.vertices)
-    columns = (mesh.faces.ravel(), painted.face_uv.ravel(), painted.face_normals.ravel())
-    found, number = np.unique(np.column_stack(columns), axis=0, return_inverse=True)
+    corners = np.column_stack(
+        [mesh.faces.ravel(), painted.face_uv.ravel(), painted.face_normals.ravel()]
+    )
+    found, number = np.unique(corners, axis=0, return_inverse=True)
     is_first = np.diff(found[:, 0], prepend=-1) > 0
     slot = np.where(is_first, found[:, 0], count - 1 + np.cumsum(~is_first))
-    total = count + int((~is_first).sum())
+    total = count + np.count_nonzero(~is_first)
     vertex = np.arange(total)
     uv = np.full(total, -1)
     normal = np.full(total, -1)
@@ -148,9 +150,8 @@ class FileMeshWriter:
         if has_own.any():
             own = self._painted.normals[split.normal[has_own]]
             length = np.linalg.norm(own, axis=1, keepdims=True)
-            normals[has_own] = np.where(
-                length > 1e-6, own / np.maximum(length, 1e-6), normals[has_own]
-            )
+            own_unit = own / np.maximum(length, 1e-6)
+            normals[has_own] = np.where(length > 1e-6, own_unit, normals[has_own])
         length = np.linalg.norm(normals, axis=1)
         normals[length < 0.5] = (0.0, 0.0, 1.0)  # for vertices without a triangle
         return unit_vectors(normals)

@@ -90,12 +90,12 @@ def worth_correcting_on(
     bar = tqdm(tried, "Pairs", unit="pair", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for pair in bar:
-            displacement = rest_in(scene, dict.fromkeys(pair, 1.0)).skin - scene.rest_positions
-            displacements.append(displacement - sums.sum(dict.fromkeys(pair, 1.0)))
+            both = dict.fromkeys(pair, 1.0)
+            displacement = rest_in(scene, both).skin - scene.rest_positions
+            displacements.append(displacement - sums.sum(both))
     area_weights = np.sqrt(vertex_areas(scene.rest_positions, scene.faces))[:, None]
-    columns = np.stack(
-        [(area_weights * displacement).ravel() for displacement in displacements], axis=1
-    )
+    weighted = [(area_weights * displacement).ravel() for displacement in displacements]
+    columns = np.stack(weighted, axis=1)
     products = np.stack([weights[first] * weights[second] for first, second in tried], axis=1)
     along = np.zeros(products.shape)  # scalar products of each frame's error and each corrective
     for frame, displacement in enumerate(take.displacements):

@@ -163,10 +163,11 @@ def _without_teeth(faces: Integers32, found: Integers) -> Integers:
     for _ in range(most_passes):
         sides = np.sort(sides_of(faces[found]), axis=1)
         _, number, uses = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-        shared = (uses[number.ravel()] == 2).reshape(3, -1).sum(axis=0)
-        if (shared > 1).all():
+        is_shared = (uses[number.ravel()] == 2).reshape(3, -1)
+        is_held = is_shared.sum(axis=0) > 1
+        if is_held.all():
             break
-        found = found[shared > 1]
+        found = found[is_held]
     if not len(found):
         return found
     vertex_piece = pieces_of(faces[found], int(faces.max()) + 1)
