@@ -21,6 +21,7 @@ BEARD = Growth(
     count=2000, root=0.0, tip=1.0, least=0.4, longest=6.0, spread=0.4, half=0.05, fringe=0.0
 )
 BEARD_NAME = HAIR_NAME + "_beard_locks"  # name of the part
+BACKMOST = 0.0  # [mm]; beards end near the ears, which have z of about 8
 FARTHEST = 100.0  # [mm]; a distance from whorls, which beards lack
 
 
@@ -39,6 +40,8 @@ def beard_of(
     full = float(density.max())
     vertices, faces, uv = skin
     points, normals, faces, dense, _ = scalp_of(vertices, faces, uv, density)
+    # At the nape, vertices on the texture's seam have coordinates of the front.
+    dense = np.where(points[:, 2] > BACKMOST, dense, 0.0)
     # Hairs grow down, on the lip also outward, and below the chin forward.
     down = np.array([0.0, -1.0, 0.35]) + [0.4, 0.0, 0.0] * np.sign(points) * (points[:, 2:] > 60.0)
     down = unit_vectors(down - (down * normals).sum(axis=1, keepdims=True) * normals)

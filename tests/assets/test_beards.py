@@ -37,12 +37,14 @@ def person():
 def test_hairs_of_a_beard_begin_on_the_skin(person):
     """Roots lie on the skin below the nose, and tips stand off it; stubble was only painted.
 
-    The triangles are flatter than the refined skin that is drawn.
+    The triangles are flatter than the refined skin that is drawn. One hair in six once stood at the
+    nape.
     """
     beard = beard_of(person)
     hairs = beard.vertices.reshape(-1, VERTEX_COUNT, 3).astype(np.float64)
     assert len(hairs) > 800
     assert hairs[..., 1].max() < person.vertices[person.anatomy["subnasale"], 1] + 45.0
+    assert hairs[..., 2].min() > person.vertices[person.landmarks[[0, 16]], 2].min() - 25.0
     ends = []
     for points in (hairs[:, 0], hairs[:, -1]):
         nearest = closest_points(points, person.vertices, person.faces)
