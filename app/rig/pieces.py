@@ -88,6 +88,8 @@ def find_pieces(
         if used[group[0]] and piece[group[0]] not in skins
     ]
     groups.sort(key=lambda group: int(group[0]))
+    if mouth is not None:
+        mouth = _between_own_rows(mouth, [rest[group] for group in groups])
     found = []
     for number, group in enumerate(groups, start=1):
         points = rest[group]
@@ -140,6 +142,35 @@ def _mouth_of(head: FittedHead) -> _Mouth | None:
         between=0.5 * (parts["teeth_upper"][:, 1].min() + parts["teeth_lower"][:, 1].max()),
         width=float(np.ptp(around[:, 0])),
     )
+
+
+def _between_own_rows(mouth: _Mouth, pieces: Sequence[Floats64]) -> _Mouth:
+    """Move the gap between the teeth to the middle of the file's two rows, if it has both.
+
+    Lips decide the place of the built-in teeth. Those of a file may lie 10 mm higher or lower.
+
+    pieces: points of all pieces [mm], (n, 3) each.
+    """
+    heights = []
+    for points in pieces:
+        low = points.min(axis=0)
+        high = points.max(axis=0)
+        is_in = ((points > mouth.low) & (points < mouth.high)).all(axis=1).mean() > 0.8
+        is_wide = high[0] - low[0] > 0.5 * mouth.width
+        if is_in and is_wide and high[1] - low[1] < 35.0 and not _is_filled(points):
+            heights.append(0.5 * (low[1] + high[1]))
+    least_apart = 6.0  # [mm] between the middles of both rows
+    if len(heights) < 2 or max(heights) - min(heights) < least_apart:
+        return mouth
+    return replace(mouth, between=float(0.5 * (min(heights) + max(heights))))
+
+
+def _is_filled(points: Floats64) -> bool:
+    """Whether a piece is not hollow in its middle; a row of teeth is, a tongue and a palate not."""
+    width, _, depth = np.ptp(points, axis=0)
+    centre = 0.5 * (points[:, 0].min() + points[:, 0].max())
+    is_middle = np.abs(points[:, 0] - centre) < 0.15 * width
+    return bool(_extent(points[is_middle, 2]) > 0.6 * depth)
 
 
 def _role_of(
@@ -207,13 +238,10 @@ def _role_in_mouth(points: Floats64, centre: Floats64, mouth: _Mouth) -> str | N
     if is_in.mean() < 0.8:
         return None
     width, height, depth = np.ptp(points, axis=0)
-    # A row of teeth is hollow in its middle; a tongue and a palate are not.
-    is_middle = np.abs(points[:, 0] - centre[0]) < 0.15 * width
-    is_filled = _extent(points[is_middle, 2]) > 0.6 * depth
     # Walls of a mouth enclose the gums. A tongue may be as high if it reaches into the throat.
     if width > 0.85 * mouth.width and height > 35.0:
         return "mouth"
-    if width > 20.0 and depth > 25.0 and is_filled:
+    if width > 20.0 and depth > 25.0 and _is_filled(points):
         # A palate lies above the edges of the teeth, and the floor of a mouth below them.
         if centre[1] < mouth.between < points[:, 1].max() + 5.0:
             return "tongue"

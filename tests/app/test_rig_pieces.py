@@ -173,6 +173,38 @@ def test_single_teeth_belong_to_their_row(face):
     assert [piece.role for piece in pieces] == roles
 
 
+def arch(middle: float, front: float) -> tuple[Points, Triangles]:
+    """A row of teeth in one piece, 8 mm high, around this height."""
+    along = np.linspace(-1.0, 1.0, 21)
+    line = np.column_stack([22.0 * along, np.full(21, middle), front - 35.0 * along**2])
+    half_height = np.array([0.0, 4.0, 0.0])
+    points = np.vstack([line - half_height, line + half_height])
+    cell = np.array([[0, 1, 21], [1, 22, 21]])
+    faces = cell + np.arange(20)[:, None, None]
+    return points, faces.reshape(-1, 3)
+
+
+@pytest.mark.parametrize("higher", [-8.0, 0.0, 9.0])
+def test_two_rows_decide_where_the_jaws_part(face, higher):
+    """Lower teeth and a tongue above the gap between the built-in rows are found by both rows.
+
+    They were taken for upper teeth in heads with full lips, whose built-in teeth lie low.
+    """
+    maker = Maker(face)
+    upper, lower = (maker.part(f"teeth_{row}")[0] for row in ("upper", "lower"))
+    between = 0.5 * (upper[:, 1].min() + lower[:, 1].max())
+    front = upper[:, 2].max() - 4.0
+    tongue, tongue_faces = maker.part("tongue")
+    tongue[:, 1] += between + higher - 2.0 - tongue[:, 1].max()
+    made = [(tongue, tongue_faces)]
+    made += [arch(between + higher + side * 6.0, front) for side in (1.0, -1.0)]
+    starts = np.cumsum([0, *(len(points) for points, _ in made)])
+    points = np.vstack([points for points, _ in made])
+    faces = np.vstack([faces + start for (_, faces), start in zip(made, starts, strict=False)])
+    roles = [piece.role for piece in pieces_with(face, (points, faces))]
+    assert roles == ["tongue", "upper_teeth", "lower_teeth"]
+
+
 def test_thousands_of_strands_need_no_costly_tests(face, monkeypatch):
     """No ball is fitted to strands of hair; a fit for each took seconds for a whole head."""
     monkeypatch.setattr(eyeballs, "sphere_of", lambda *_: pytest.fail("a ball was fitted"))
