@@ -15,7 +15,7 @@ from risorius.assets.coarse import CoarseHead
 from risorius.assets.identities import Person
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.normals import cross_products
-from risorius.geometry.sides import edges_of
+from risorius.geometry.sides import edges_of, side_lengths
 
 from ..errors import UserError
 from ..scenes import Drawable
@@ -219,7 +219,7 @@ def _sides_of_coarse_lids(scene: Drawable) -> tuple[list[int], list[int]]:
         outer = np.flatnonzero(is_near & ~turned)
         margin = np.intersect1d(faces[inner], faces[outer])
         at_margin = links[np.isin(links, margin).any(axis=1)]
-        lengths = np.linalg.norm(np.diff(x[at_margin], axis=1)[:, 0], axis=1)
+        lengths = side_lengths(x, at_margin)
         coarse_edge = 4.2  # [mm], mean of the edges at a margin; that of the built-in head is 3.8
         if len(lengths) and lengths.mean() > coarse_edge:
             backs += inner.tolist()

@@ -102,19 +102,25 @@ def _is_hidden(points, triangles):
     return (is_across & (depth < -0.5)).any(axis=1)
 
 
+def _shut_eyes_of_few_triangles(head, folder):
+    """The scene of a head of 1 300 triangles with shut eyes, and its refined mesh."""
+    points, faces = decimated(head.vertices, head.faces, 1300)
+    numbers = cKDTree(points).query(head.vertices[head.landmarks])[1]
+    scene = FaceScene(fit_head(*UserHead(Mesh(points, faces), numbers).write(folder)))
+    refiner = refiner_for(scene, Refinement())
+    scene.pose({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
+    scene.step(1.0)
+    mesh = refiner.refine(scene.positions)
+    return scene, mesh
+
+
 def test_shut_lids_of_few_triangles_have_no_dark_spots(head, tmp_path):
     """No normal of a shut lid of 1 300 triangles points backward, as many did by inner sides.
 
     Compared are the corners of drawn triangles that face the viewer, with the triangle's normal. A
     triangle of the lower lid that lies behind the upper one is not compared.
     """
-    points, faces = decimated(head.vertices, head.faces, 1300)
-    numbers = cKDTree(points).query(head.vertices[head.landmarks])[1]
-    scene = FaceScene(fit_head(*UserHead(Mesh(points, faces), numbers).write(tmp_path)))
-    refiner = refiner_for(scene, Refinement())
-    scene.pose({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
-    scene.step(1.0)
-    mesh = refiner.refine(scene.positions)
+    scene, mesh = _shut_eyes_of_few_triangles(head, tmp_path)
     turned = unit_vectors(cross_products(mesh.positions.astype(np.float64), mesh.triangles))
     middles = mesh.positions[mesh.triangles].mean(axis=1)
     lids = turned[:, 2] > 0.2
@@ -133,13 +139,7 @@ def test_no_iris_pierces_a_shut_lid_of_few_triangles(head, tmp_path):
     Flat lids of 1 300 triangles lie before the eyeball, but their refined edges bent inward below
     the brow, and a pupil was seen.
     """
-    points, faces = decimated(head.vertices, head.faces, 1300)
-    numbers = cKDTree(points).query(head.vertices[head.landmarks])[1]
-    scene = FaceScene(fit_head(*UserHead(Mesh(points, faces), numbers).write(tmp_path)))
-    refiner = refiner_for(scene, Refinement())
-    scene.pose({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
-    scene.step(1.0)
-    mesh = refiner.refine(scene.positions)
+    scene, mesh = _shut_eyes_of_few_triangles(head, tmp_path)
     for eye in scene.head.eyes:
         part = next(part for part in scene.head.parts if part.name == f"eyeball_{eye.name}")
         away = part.vertices - eye.centre
