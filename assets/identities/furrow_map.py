@@ -15,7 +15,6 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Integers64
 from ...geometry.carving import carve
-from ...geometry.texels import Texels
 from ..data_files import Image
 from ..loading import load
 from ..model import Wrinkles
@@ -31,7 +30,7 @@ from .furrows import (
     frown_lines,
 )
 from .lines import ExpressionLines
-from .relief import add_to
+from .relief import add_to, texels_of
 
 FULL_DEPTH = 0.8  # [mm]; depth of a furrow that the map stores as 255
 FAR_AWAY = 1e3  # [mm]; coordinates of texels outside the face
@@ -198,9 +197,7 @@ def _face_texels(size: int) -> tuple[slice, slice, Floats64]:
     head = load("head")
     x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)
     is_face = ((z > 30.0) & (np.abs(x) < 75.0) & (y > -100.0) & (y < 85.0)).all(axis=1)
-    corners = head.uv[head.face_uv].astype(np.float64)
-    corners[~is_face] = -1.0  # outside the map
-    texels = Texels.within(corners, (size, size))
+    texels = texels_of(is_face, size)
     rows = slice(int(texels.rows.min()), int(texels.rows.max()) + 1)
     columns = slice(int(texels.columns.min()), int(texels.columns.max()) + 1)
     place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), FAR_AWAY)

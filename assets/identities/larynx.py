@@ -16,7 +16,7 @@ from ...geometry.texels import Texels
 from ..loading import load
 from ..smooth import smooth_step
 from .person import Person
-from .relief import Relief, relief_of
+from .relief import Relief, relief_of, texels_of
 
 
 def larynx_of(person: Person, size: int) -> Relief:
@@ -42,6 +42,4 @@ def _neck_texels(size: int) -> Texels:
     is_front = (
         (np.abs(x) < 25.0) & (y < head.vertices[head.anatomy["menton"], 1]) & (z > 30.0)
     ).all(axis=1)
-    corners = head.uv[head.face_uv].astype(np.float64)
-    corners[~is_front] = -1.0  # outside the map
-    return Texels.within(corners, (size, size))
+    return texels_of(is_front, size)

@@ -24,7 +24,7 @@ from ..loading import load
 from ..model import Wrinkles
 from ..smooth import smooth_step
 from .person import Person
-from .relief import Relief, add_to, relief_of
+from .relief import Relief, add_to, relief_of, texels_of
 
 EYE_SIDES = ("left", "right")
 EDGE_VERTEX_COUNT = 11  # vertices on the edge of an upper lid
@@ -182,15 +182,10 @@ def _texels_around(side: str, size: int) -> _EyeTexels:
     points = _lid_edge(head.vertices, side)
     curve = scipy.spatial.cKDTree(_edge_weights(np.linspace(0.0, 1.0, CURVE_SAMPLE_COUNT)) @ points)
     is_near = (curve.query(head.vertices)[0] < reach)[head.faces].any(axis=1)
-    corners = head.uv[head.face_uv].astype(np.float64)
-    corners[~is_near] = -1.0  # outside the map
-    texels = Texels.within(corners, (size, size))
+    texels = texels_of(is_near, size)
     places = texels.interpolate(head.vertices[head.faces])
     along = _nearest(places, points)
     edge_weights = _edge_weights(along)
     offset = places - edge_weights @ points
     kept = (np.linalg.norm(offset, axis=1) < reach) & (offset[:, 1] > -0.2)
-    texels = Texels(
-        texels.rows[kept], texels.columns[kept], texels.faces[kept], texels.weights[kept]
-    )
-    return _EyeTexels(texels, along[kept], edge_weights[kept])
+    return _EyeTexels(texels.only(kept), along[kept], edge_weights[kept])

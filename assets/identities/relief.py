@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.arrays import Floats32, Floats64
+from ...geometry.arrays import Flags, Floats32, Floats64
 from ...geometry.texels import Texels
 from ..data_files import Image
+from ..loading import load
 from ..model import FineShape
 
 
@@ -25,6 +26,14 @@ class Relief(NamedTuple):
     columns: slice
     heights: Floats64
     light: Floats64
+
+
+def texels_of(is_chosen: Flags, size: int) -> Texels:
+    """Find the texels of flagged triangles of the built-in head, (F,), in a (size, size) map."""
+    head = load("head")
+    corners = head.uv[head.face_uv].astype(np.float64)
+    corners[~is_chosen] = -1.0  # outside the map
+    return Texels.within(corners, (size, size))
 
 
 def relief_of(texels: Texels, heights: Floats64, light: Floats64) -> Relief:

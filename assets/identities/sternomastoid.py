@@ -12,11 +12,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...geometry.texels import Texels
 from ..loading import load
 from ..smooth import smooth_step
 from .person import Person
-from .relief import Relief, relief_of
+from .relief import Relief, relief_of, texels_of
 
 # Course of the built-in head's muscles: height [mm], and angle around the neck [deg], 90 in front.
 COURSE_POINTS = np.array(
@@ -54,9 +53,7 @@ def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
     is_on_neck = (y < -60.0) & (z < 80.0) & (z > -60.0)
     is_near = (side * x >= 0.0).all(axis=1) & is_on_neck.any(axis=1)
-    corners = head.uv[head.face_uv].astype(np.float64)
-    corners[~is_near] = -1.0  # outside the map
-    texels = Texels.within(corners, (size, size))
+    texels = texels_of(is_near, size)
     x, y, z = texels.interpolate(head.vertices[head.faces]).T
     axis_depth = -8.0  # [mm]; z of the neck's axis
     angle = np.arctan2(z - axis_depth, side * x)
@@ -70,10 +67,8 @@ def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)
     inside *= smooth_step(-24.0, -14.0, off) * smooth_step(-158.0, -148.0, y)
     kept = inside * (belly + np.abs(tendon - hollow)) > 2e-3
-    rows = texels.rows[kept]
-    columns = texels.columns[kept]
-    texels = Texels(rows, columns, texels.faces[kept], texels.weights[kept])
-    light = np.ones(len(rows))
+    texels = texels.only(kept)
+    light = np.ones(len(texels.rows))
     raised = (inside * each for each in (belly, tendon - hollow))
     first, second = (relief_of(texels, heights[kept], light) for heights in raised)
     return first, second

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .arrays import Floats64, Integers32, Integers64
+from .arrays import Flags, Floats64, Integers32, Integers64
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,12 @@ class Texels:
         weights = np.empty((len(rows), 3))
         _write_weights(pixels, rows, columns, faces, weights)
         return cls(rows, columns, faces, weights)
+
+    def only(self, is_kept: Flags) -> Texels:
+        """The texels with a flag, (n,)."""
+        return Texels(
+            self.rows[is_kept], self.columns[is_kept], self.faces[is_kept], self.weights[is_kept]
+        )
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Floats64:
         """Values of corners, (F, 3, ...), at the texels, shape (n, ...)."""
