@@ -21,9 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats32, Floats64, Integers64, Unsigned32
+from ..geometry.vectors import difference, dot
 from ..jit import njit
 from .mesh.validation import checked_mesh, take_positions_like_rest, used_vertices
-from .mesh.vectors import difference, dot
 
 LEAST_FLATNESS = 1e-6
 """Height over length below which a triangle at rest has no plane to measure strain in."""

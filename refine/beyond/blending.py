@@ -46,6 +46,21 @@ Differs from the paper: "We don't generate any new vertices in the interior" (se
 import numpy as np
 
 from ...geometry.arrays import Floats32, Integers64, Unsigned8, Unsigned16, Unsigned32
+from ...geometry.vectors import (
+    HALF,
+    ONE,
+    QUARTER,
+    ROW_WIDTH,
+    THIRD,
+    ZERO,
+    Vector,
+    less,
+    plus,
+    row_of,
+    times,
+    unit,
+    write_row,
+)
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..kahler.criterion import Criterion
@@ -64,21 +79,6 @@ from ..kahler.table import (
 )
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import parallel_for
-from ..mesh.vectors import (
-    HALF,
-    ONE,
-    QUARTER,
-    ROW_WIDTH,
-    THIRD,
-    ZERO,
-    Vector,
-    less,
-    plus,
-    row_of,
-    times,
-    unit,
-    write_row,
-)
 
 RAMP_WIDTH = np.float32(0.25)
 """Range of the metric over which a point moves from the straight edge to its final position; 1 is

@@ -34,16 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned32
-from ...jit import njit
-from ..kahler.frame import SPLIT_EDGES, FrameBuffers
-from ..kahler.scheme import Scheme
-from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
-from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.creases import sectors_of, sharpened
-from ..mesh.fans import Fans, corners_behind, fans_around, fans_of
-from ..mesh.normals import weigh_corners
-from ..mesh.threads import parallel_for
-from ..mesh.vectors import (
+from ...geometry.vectors import (
     HALF,
     ONE,
     QUARTER,
@@ -62,6 +53,15 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
+from ..kahler.frame import SPLIT_EDGES, FrameBuffers
+from ..kahler.scheme import Scheme
+from ..mesh.borders import edges_of_outlines, follow_borders, follow_outlines
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.creases import sectors_of, sharpened
+from ..mesh.fans import Fans, corners_behind, fans_around, fans_of
+from ..mesh.normals import weigh_corners
+from ..mesh.threads import parallel_for
 from .cubic_normals import cross_products, steepen_normals, weighted_normals
 
 START_POINT = 0

@@ -6,10 +6,10 @@ cubic.py explains both.
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned32
+from ...geometry.vectors import ROW_WIDTH, ZERO, less, plus, row_of, times, write_row
 from ...jit import njit
 from ..kahler.look_up import SIDE_BITS, SIDE_MASK
 from ..mesh.normals import cross_product, normalise
-from ..mesh.vectors import ROW_WIDTH, ZERO, less, plus, row_of, times, write_row
 
 
 @njit

@@ -29,11 +29,7 @@ import numpy.typing as npt
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned32
 from ...geometry.closest import closest_points
-from ...jit import njit
-from ..kahler.frame import FrameBuffers
-from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.validation import checked_mesh
-from ..mesh.vectors import (
+from ...geometry.vectors import (
     SMALLEST_FLOAT,
     Vector,
     between,
@@ -45,6 +41,10 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
+from ..kahler.frame import FrameBuffers
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.validation import checked_mesh
 from .cubic import END_POINT, FULLNESS_FACTOR, MIDDLE_POINT, START_POINT, CubicScheme
 from .measuring import mean_length
 

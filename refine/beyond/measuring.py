@@ -19,13 +19,13 @@ from typing import Annotated
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
+from ...geometry.vectors import ONE
 from ...jit import njit
 from ..border.option import Option
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Levels, Thresholds
 from ..kahler.scheme import Scheme
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import ONE
 from .blending import RAMP_WIDTH
 
 SILHOUETTE_BAND = 0.3

@@ -27,13 +27,7 @@ Differs from the paper, whose rule is `normals="linear"`.
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
-from ...jit import njit
-from ..kahler.frame import ROWS, SPLIT_EDGES, FrameBuffers
-from ..kahler.scheme import Scheme
-from ..mesh.connectivity import Connectivity
-from ..mesh.creases import sharpened
-from ..mesh.threads import parallel_for
-from ..mesh.vectors import (
+from ...geometry.vectors import (
     ONE,
     ZERO,
     cross,
@@ -44,6 +38,12 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
+from ..kahler.frame import ROWS, SPLIT_EDGES, FrameBuffers
+from ..kahler.scheme import Scheme
+from ..mesh.connectivity import Connectivity
+from ..mesh.creases import sharpened
+from ..mesh.threads import parallel_for
 from .whole_surface import WholeSurface, between_rows
 
 NORMAL_HASTE = np.float32(3.0)

@@ -7,14 +7,7 @@ vectorises that loop (mesh/normals.py), and measuring all edges takes 0.42 of th
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Unsigned32
-from ...jit import njit
-from ..kahler.frame import FrameBuffers, buffers_for, split_everywhere
-from ..kahler.look_up import SIDE_BITS
-from ..mesh.connectivity import Connectivity
-from ..mesh.fans import fans_before
-from ..mesh.normals import normalise
-from ..mesh.threads import parallel_for
-from ..mesh.vectors import (
+from ...geometry.vectors import (
     HALF,
     ONE,
     ROW_WIDTH,
@@ -32,6 +25,13 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
+from ..kahler.frame import FrameBuffers, buffers_for, split_everywhere
+from ..kahler.look_up import SIDE_BITS
+from ..mesh.connectivity import Connectivity
+from ..mesh.fans import fans_before
+from ..mesh.normals import normalise
+from ..mesh.threads import parallel_for
 
 CENTRE_WEIGHT = np.float32(0.511)
 """Weight of the edges' displacements in the centre of a triangle: 4/9 (blending.py) plus 15 %,

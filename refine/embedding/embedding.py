@@ -15,6 +15,7 @@ import numpy.typing as npt
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ...geometry.read_only import read_only
+from ...geometry.vectors import Vector, cross, plus, row_of, times, write_row
 from ...jit import njit
 from ..mesh.connectivity import connect_writable
 from ..mesh.creases import with_creases
@@ -27,7 +28,6 @@ from ..mesh.validation import (
     take_positions_like_rest,
     used_vertices,
 )
-from ..mesh.vectors import Vector, cross, plus, row_of, times, write_row
 from .frames import FRAME_NUMBERS
 from .patches import FRAME_COLUMN, SmoothSurface, place_on
 from .places import across_edges, has_area, nearest_places, settle

@@ -15,11 +15,11 @@ import numpy as np
 from ...geometry.arrays import Floats64, Integers64, Unsigned32
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
+from ...geometry.vectors import Vector, cross, difference, dot, less, plus, times, write_row
 from ...jit import njit
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import corner_sectors
 from ..mesh.normals import SLIVER_SINE, weigh_corners
-from ..mesh.vectors import Vector, cross, difference, dot, less, plus, times, write_row
 
 FRAME_NUMBERS = 5
 """Count of the numbers of a frame: a quaternion and the stretch of the surface."""

@@ -26,11 +26,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Floats64, Integers64, Unsigned32
+from ...geometry.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row
 from ...jit import njit
 from ..mesh.borders import follow_borders
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import parallel_for
-from ..mesh.vectors import Vector, cross, difference, dot, less, plus, row_of, times, write_row
 from .frames import (
     AXES_NUMBERS,
     FRAME_NUMBERS,

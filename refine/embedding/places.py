@@ -15,10 +15,10 @@ import numpy as np
 from ...geometry.arrays import Flags, Floats64, Integers64, Unsigned32
 from ...geometry.closest import closest_points
 from ...geometry.normals import cross_products
+from ...geometry.vectors import Vector, dot, less, plus, row_of, times
 from ...jit import njit
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import parallel_for
-from ..mesh.vectors import Vector, dot, less, plus, row_of, times
 from .frames import unit_of
 from .patches import SmoothSurface, place_on
 

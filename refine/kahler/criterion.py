@@ -22,12 +22,12 @@ from typing import Annotated
 import numpy as np
 
 from ...geometry.arrays import Flags, Floats32, Floats64, Unsigned8, Unsigned32
+from ...geometry.vectors import ONE, ROW_WIDTH, add_to_row, cross, difference, dot, row_of
 from ...jit import njit
 from ..border.option import Option
 from ..border.plugin import View
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import ONE, ROW_WIDTH, add_to_row, cross, difference, dot, row_of
 from .scheme import Scheme
 
 THRESHOLD_ONCE = 0.02

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Floats32, Unsigned32
+from ...geometry.vectors import ONE, ZERO, is_representable, plus, row_of, unit, write_row
 from ...jit import njit
 from ..mesh.connectivity import Surroundings
 from ..mesh.lanes import (
@@ -23,7 +24,6 @@ from ..mesh.lanes import (
     write_point,
 )
 from ..mesh.rings import NEAR_COUNT, Rings
-from ..mesh.vectors import ONE, ZERO, is_representable, plus, row_of, unit, write_row
 from .frame import FrameBuffers
 
 

@@ -15,9 +15,9 @@ split.
 import numpy as np
 
 from ...geometry.arrays import Floats32, Integers32, Integers64, Unsigned8, Unsigned16, Unsigned32
+from ...geometry.vectors import HALF, QUARTER, ROW_WIDTH, THREE_QUARTERS, row_of, write_row
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
-from ..mesh.vectors import HALF, QUARTER, ROW_WIDTH, THREE_QUARTERS, row_of, write_row
 from .frame import ROWS, SPLIT_EDGES, TRIANGLES, TWICE_SPLIT_EDGES, FrameBuffers
 from .table import CENTRE_POINT
 

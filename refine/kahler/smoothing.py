@@ -46,11 +46,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned8, Unsigned32
-from ...jit import njit
-from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.rings import NEAR_COUNT, Rings, vertex_rings
-from ..mesh.threads import parallel_for, threads_for
-from ..mesh.vectors import (
+from ...geometry.vectors import (
     HALF,
     ONE,
     ROW_WIDTH,
@@ -63,6 +59,10 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.rings import NEAR_COUNT, Rings, vertex_rings
+from ..mesh.threads import parallel_for, threads_for
 from .frame import SPLIT_EDGES, TWICE_SPLIT_EDGES, FrameBuffers
 from .kept_splits import (
     KeptRows,

@@ -8,8 +8,8 @@ result before they write it. The results equal computations with three numbers t
 import numpy as np
 
 from ...geometry.arrays import Floats32
+from ...geometry.vectors import ONE, ROW_WIDTH, Number, is_representable
 from ...jit import njit
-from .vectors import ONE, ROW_WIDTH, Number, is_representable
 
 LANE_WIDTH = 4
 """Columns of a row. A kernel that asserts this width is faster, because the compiler knows the row

@@ -11,8 +11,7 @@ loses no precision. Normals at rest and in a frame come from the same code: see 
 import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Unsigned32
-from ...jit import njit
-from .vectors import (
+from ...geometry.vectors import (
     ONE,
     ROW_WIDTH,
     ZERO,
@@ -29,6 +28,7 @@ from .vectors import (
     unit,
     write_row,
 )
+from ...jit import njit
 
 SLIVER_SINE = 1e-9
 """Sine of an angle below which a triangle counts as degenerate and has no normal."""

@@ -19,4 +19,5 @@ sides.py          the sides and edges of triangles, as pairs of vertices
 texels.py         the texels of a picture that triangles lie over
 tones.py          colours of skin, composed texel by texel
 transforms.py     points moved by matrices
+vectors.py        vectors of three numbers in kernels
 """

@@ -6,6 +6,7 @@ import numpy.typing as npt
 from ..jit import njit
 from .arrays import Floats32, Floats64, Integers32
 from .read_only import read_only
+from .vectors import cross, difference, dot
 
 
 class TextureGradients:
@@ -51,15 +52,14 @@ def _add_gradients(
         a = faces[t, 0]
         b = faces[t, 1]
         c = faces[t, 2]
-        from_a_to_b = _between(positions, a, b)
-        normal = _cross(from_a_to_b, _between(positions, a, c))
-        x, y, z = normal
-        area = np.sqrt(x * x + y * y + z * z)
+        from_a_to_b = difference(positions, a, b)
+        normal = cross(from_a_to_b, difference(positions, a, c))
+        area = np.sqrt(dot(normal, normal))
         if area < 1e-12:
             continue
-        across_a = _cross(normal, _between(positions, b, c))
-        across_b = _cross(normal, _between(positions, c, a))
-        across_c = _cross(normal, from_a_to_b)
+        across_a = cross(normal, difference(positions, b, c))
+        across_b = cross(normal, difference(positions, c, a))
+        across_c = cross(normal, from_a_to_b)
         for j in range(3):
             by_a = across_a[j] / area
             by_b = across_b[j] / area
@@ -70,21 +70,3 @@ def _add_gradients(
                     sums[face_uv[t, i], 3 * k + j] += along
         for i in range(3):
             sums[face_uv[t, i], 6] += area
-
-
-@njit
-def _between(positions: Floats64, a: np.int32, b: np.int32) -> tuple[float, float, float]:
-    """The vector from vertex a to vertex b."""
-    return (
-        positions[b, 0] - positions[a, 0],
-        positions[b, 1] - positions[a, 1],
-        positions[b, 2] - positions[a, 2],
-    )
-
-
-@njit
-def _cross(
-    u: tuple[float, float, float], v: tuple[float, float, float]
-) -> tuple[float, float, float]:
-    """Vector product."""
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]

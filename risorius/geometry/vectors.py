@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...geometry.arrays import Floats64
-from ...jit import njit
+from ..jit import njit
+from .arrays import Floats64
 
 Rows = npt.NDArray[np.number[Any]]
-Number = int | np.uint32
+Number = int | np.integer[Any]
 Vector = tuple[Any, Any, Any]
 """Three numbers in one precision, single or double."""
 ROW_WIDTH = 3
