@@ -60,11 +60,7 @@ class Anatomy:
         rest = model.skin.rest
         if self._held is None:
             self._held = muscles.holds_of_lines(rest)
-        x = self._state.x
-        lines = muscles.courses(self._bones.mandible, x - rest, self._held)
-        for number, ring in muscles.rings:
-            hold = ring()
-            lines[muscles.names[number]].append(hold.weight @ x[hold.vertices])
+        lines = muscles.courses(self._bones.mandible, self._state.x, rest, self._held)
         return self._in_head(lines)
 
     def _in_head(self, lines: dict[str, list[Floats64]]) -> dict[str, list[Floats64]]:

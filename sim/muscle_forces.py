@@ -99,12 +99,9 @@ class MuscleForces:
         self, activation: Floats64, mandible: RigidMotion, state: State
     ) -> dict[str, list[Floats64]]:
         """Polylines to draw [mm]: contracted fibres of linear muscles, skin along sphincters."""
-        lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
+        lines = self._along_sphincters(state.x)
         move_lines(self.bundle, self.stack, activation, mandible, state.lines)
-        rings = dict(self.rings)
-        for b, muscle in enumerate(self.bundle.muscle):
-            if muscle in rings:
-                continue
+        for b, muscle in self._lines_of_linear_muscles():
             points = self.bundle.points[b]
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
             if state.lines.is_carried[b]:
@@ -116,24 +113,19 @@ class MuscleForces:
                 np.interp(fixed + remaining * (arc - fixed), arc, moved[:, k]) for k in range(3)
             ]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
-        for muscle, ring in self.rings:
-            hold = ring()
-            lines[self.names[muscle]].append(hold.weight @ state.x[hold.vertices])
         return lines
 
     def courses(
-        self, mandible: RigidMotion, moved_skin: Floats64, held: Sequence[LineHold]
+        self, mandible: RigidMotion, x: Floats64, rest: Floats64, held: Sequence[LineHold]
     ) -> dict[str, list[Floats64]]:
-        """Lines along linear muscles now, from the bone to the moved skin: polylines [mm].
+        """Lines along muscles now, from the bone to the moved skin: polylines [mm].
 
-        moved_skin: displacement of the skin [mm], shape (V, 3). held: see `holds_of_lines`.
+        x, rest: the skin now and at rest [mm], shape (V, 3). held: see `holds_of_lines`.
         The contracted fibres of `lines` end before the skin.
         """
-        lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
-        rings = dict(self.rings)
-        for b, muscle in enumerate(self.bundle.muscle):
-            if muscle in rings:
-                continue
+        lines = self._along_sphincters(x)
+        moved_skin = x - rest
+        for b, muscle in self._lines_of_linear_muscles():
             points = self.bundle.points[b]
             bone = self.bundle.mandible[b][:, None] * mandible.displacements(points)
             vertices, weight = held[b]
@@ -143,6 +135,20 @@ class MuscleForces:
             moved = points + bone + fraction * (weight @ moved_skin[vertices] - bone)
             lines[self.names[muscle]].append(moved)
         return lines
+
+    def _along_sphincters(self, x: Floats64) -> dict[str, list[Floats64]]:
+        """Lines in the skin x, (V, 3) [mm], along sphincters; no lines for other muscles."""
+        lines: dict[str, list[Floats64]] = {name: [] for name in self.names}
+        for muscle, ring in self.rings:
+            hold = ring()
+            lines[self.names[muscle]].append(hold.weight @ x[hold.vertices])
+        return lines
+
+    def _lines_of_linear_muscles(self) -> list[tuple[int, int]]:
+        """The number of each line of a linear muscle, and the number of its muscle."""
+        rings = dict(self.rings)
+        muscles = self.bundle.muscle.tolist()
+        return [(b, muscle) for b, muscle in enumerate(muscles) if muscle not in rings]
 
     def holds_of_lines(self, rest: Floats64) -> list[LineHold]:
         """Return the skin around each line's points, with weights that fall with the distance.
