@@ -9,6 +9,7 @@ vertices.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -65,9 +66,10 @@ def filling_of(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> Filling 
         corners = [number for chain in chains for number in chain[:-1]]
         around = points[corners]
         upper, lower = (_smooth_curve(points[list(chain)]) for chain in chains)
-        found = own[_filling(vertices, faces, around, upper, lower)]
+        opening = _Opening(around, upper, lower)
+        found = own[_filling(vertices, faces, opening)]
         if not len(found) and name.endswith("eye"):
-            found = own[_sheet(vertices, faces, around, upper, lower)]
+            found = own[_sheet(vertices, faces, opening)]
         if len(found):
             openings.append(name)
             triangles.append(found)
@@ -84,51 +86,70 @@ def _smooth_curve(points: Floats64) -> Floats64:
     return np.asarray(curve(np.linspace(0.0, lengths[-1], place_count)))
 
 
-def _filling(
-    vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
-) -> Integers:
-    """Find the triangles that fill an opening as a polygon with all corners on its edge.
+class _Opening(NamedTuple):
+    """The mouth or the opening of an eye, in the face space [mm]; z leads to the viewer."""
 
-    All points are in the face space [mm], whose z axis points to the viewer.
+    around: Floats64  # (n, 3) landmarks
+    upper: Floats64  # (m, 3) curve through the landmarks from the first corner to the second
+    lower: Floats64  # (m, 3) curve back to the first corner
 
-    around: landmarks of the opening, (n, 3). upper, lower: curves through the landmarks, from the
-    first corner to the second and back, (m, 3) each.
-    """
+    @property
+    def edge(self) -> Floats64:
+        """Both curves, once around, (2 m - 2, 3)."""
+        return np.concatenate([self.upper[:-1], self.lower[:-1]])
+
+    @property
+    def width(self) -> float:
+        """Distance of the corners [mm]."""
+        return float(np.linalg.norm(self.upper[-1] - self.upper[0]))
+
+    @property
+    def heights(self) -> Floats64:
+        """Heights of the upper curve above the lower one [mm], (m,)."""
+        return (self.upper - self.lower[::-1])[:, 1]
+
+    def outlines(self, centre: Floats64) -> list[Floats64]:
+        """The edge from the front, (2 m - 2, 2), and smaller ones, shrunk toward a point (3,).
+
+        Folds of skin may hang into the opening, and margins of lids are rounded.
+        """
+        return [(centre + scale * (self.edge - centre))[:, :2] for scale in (1.0, 0.9, 0.8)]
+
+    def is_covered_by(self, corners: Floats64) -> bool:
+        """Whether triangles (k, 3, 3) have corners near all landmarks."""
+        off = scipy.spatial.cKDTree(corners.reshape(-1, 3)).query(self.around)[0]
+        return bool(off.max() < 0.2 * self.width)
+
+
+def _filling(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers:
+    """Find the triangles that fill an opening as a polygon with all corners on its edge."""
     none = np.zeros(0, np.int64)
-    edge = np.concatenate([upper[:-1], lower[:-1]])
-    centre = edge.mean(axis=0)
-    width = float(np.linalg.norm(upper[-1] - upper[0]))
-    height = (upper - lower[::-1])[:, 1].mean()
-    if height < 0.02 * width:  # shut: no triangle lies in it
+    if opening.heights.mean() < 0.02 * opening.width:  # shut: no triangle lies in it
         return none
+    centre = opening.edge.mean(axis=0)
     centroids = vertices[faces].mean(axis=1)
     distances = np.linalg.norm(centroids - centre, axis=1)
-    near = np.flatnonzero(distances < 0.6 * width)
+    near = np.flatnonzero(distances < 0.6 * opening.width)
     used = np.unique(faces[near])
-    _, nearest = scipy.spatial.cKDTree(vertices[used]).query(upper[[0, -1]])
+    _, nearest = scipy.spatial.cKDTree(vertices[used]).query(opening.upper[[0, -1]])
     ends = used[nearest]
-    for scale in (1.0, 0.9, 0.8):  # smaller curves too, because folds may hang into the opening
-        shrunk = centre + scale * (edge - centre)
-        inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
+    for outline in opening.outlines(centre):
+        inside = near[_is_inside(centroids[near, :2], outline)]
         # Add triangles outside the curve, between it and a side of the polygon.
         corners = np.append(faces[inside], ends)
         found = np.flatnonzero(np.isin(faces, corners).all(axis=1))
         filling = faces[found]
         if _is_polygon(filling):
-            return found if _covers_opening(vertices[filling], around, width) else none
+            return found if opening.is_covered_by(vertices[filling]) else none
     return none
 
 
-def _sheet(
-    vertices: Floats64, faces: Integers32, around: Floats64, upper: Floats64, lower: Floats64
-) -> Integers:
-    """Find the triangles of a sheet between the lids that covers an eye; see `_filling`."""
+def _sheet(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers:
+    """Find the triangles of a sheet between the lids that covers an eye."""
     none = np.zeros(0, np.int64)
-    edge = np.concatenate([upper[:-1], lower[:-1]])
-    centre = around.mean(axis=0)
-    width = float(np.linalg.norm(upper[-1] - upper[0]))
+    centre = opening.around.mean(axis=0)
     least_height = 0.1  # relative to the width; lids that are nearly shut have no opening
-    if (upper - lower[::-1])[:, 1].max() < least_height * width:
+    if opening.heights.max() < least_height * opening.width:
         return none
     corners = vertices[faces]
     is_cover = covering(corners, centre)
@@ -139,22 +160,15 @@ def _sheet(
         forward = -forward
     centroids = corners.mean(axis=1)
     is_in_front = centroids[:, 2] > centre[2] - COVER_DEPTH
-    is_near = np.linalg.norm(centroids - centre, axis=1) < 0.6 * width
+    is_near = np.linalg.norm(centroids - centre, axis=1) < 0.6 * opening.width
     near = np.flatnonzero((forward > 0.0) & is_in_front & is_near)
-    for size in (1.0, 0.9, 0.8):  # smaller curves too, because margins of lids are rounded
-        shrunk = centre + size * (edge - centre)
-        inside = near[_is_inside(centroids[near, :2], shrunk[:, :2])]
+    for outline in opening.outlines(centre):
+        inside = near[_is_inside(centroids[near, :2], outline)]
         found = _without_teeth(faces, inside)
         sheet = faces[found]
         if _is_disc(sheet):
-            return found if _covers_opening(vertices[sheet], around, width) else none
+            return found if opening.is_covered_by(vertices[sheet]) else none
     return none
-
-
-def _covers_opening(corners: Floats64, around: Floats64, width: float) -> bool:
-    """Whether triangles (m, 3, 3) have corners near all landmarks (n, 3) of an opening."""
-    off = scipy.spatial.cKDTree(corners.reshape(-1, 3)).query(around)[0]
-    return bool(off.max() < 0.2 * width)
 
 
 def _without_teeth(faces: Integers32, found: Integers) -> Integers:
