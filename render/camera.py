@@ -178,18 +178,27 @@ class OrbitCamera:
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
         for _ in range(8):  # repeated, because perspective makes one round inexact
-            x, y, z = axes @ (points - self.target).T
-            self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
+            x, y, z = self._step_back(points, axes, usable)
             depth = self.distance - z
             across = x / depth
             along = y / depth
             centre = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
             self.target = self.target + self.distance * (centre @ axes[:2])
-        x, y, z = axes @ (points - self.target).T
-        self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
+        x, y, z = self._step_back(points, axes, usable)
         self.distance = max(self.distance, float(z.max()) + 0.05 * self.scene_radius)
         widest = float((np.abs(x) / (self.distance - z)).max())
         self.narrowest_aspect = widest / usable
+
+    def _step_back(self, points: npt.NDArray[Any], axes: Floats64, usable: float) -> Floats64:
+        """Move until the frame is high enough for points, (n, 3).
+
+        usable: tangent of half the height of the frame without margins. Returns the points relative
+        to the target, in the camera's axes, (3, n).
+        """
+        relative: Floats64 = axes @ (points - self.target).T
+        _, y, z = relative
+        self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
+        return relative
 
 
 @dataclass(frozen=True, eq=False)
