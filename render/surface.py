@@ -105,12 +105,17 @@ class Surface:
         """Direct OpenGL calls of this thread to this surface, if several are open."""
         if not self._is_open:
             raise GLError("this surface is closed. Cure: open a new one")
-        if Surface._current is self:
-            return
+        if Surface._current is not self:
+            Surface.leave_current()
+            Surface._current = self
+            self._bind()
+
+    @staticmethod
+    def leave_current() -> None:
+        """Let no surface receive OpenGL calls of this thread."""
         if Surface._current is not None:
             Surface._current._unbind()
-        Surface._current = self
-        self._bind()
+        Surface._current = None
 
     def close(self) -> None:
         """Release all resources; a second call does nothing."""
@@ -180,9 +185,7 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
     GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
     """
     check_size(size)
-    if Surface._current is not None:
-        Surface._current._unbind()
-        Surface._current = None
+    Surface.leave_current()
     gl = _offscreen_context()
     try:
         surface = OffscreenSurface(gl, size, samples)

@@ -98,8 +98,7 @@ class WindowSurface(Surface):
     def resolve(self) -> None:
         """End the scene; later drawings are panels on top. A second call removes the panels."""
         self.make_current()
-        self._compositor.compose(self.target, self.area)
-        self._draw_marks(self._compositor.frame)
+        self._compose()
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
@@ -123,6 +122,11 @@ class WindowSurface(Surface):
         self._glfw.swap_buffers(self.handle)
         self._is_resolved = False
 
+    def _compose(self) -> None:
+        """Draw the scene and marks into the compositor's frame."""
+        self._compositor.compose(self.target, self.area)
+        self._draw_marks(self._compositor.frame)
+
     def _draw_marks(self, target: moderngl.Framebuffer) -> None:
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
@@ -143,8 +147,7 @@ class WindowSurface(Surface):
         """Return the visible frame with panels, top row first, (H, W, 3), uint8."""
         self.make_current()
         if not self._is_laid:
-            self._compositor.compose(self.target, self.area)
-            self._draw_marks(self._compositor.frame)
+            self._compose()
         return image_of(self._compositor.read(), self.size)
 
     def _bind(self) -> None:
@@ -199,9 +202,7 @@ def open_window(
     """
     check_size(size)
     glfw = _import_glfw()
-    if Surface._current is not None:
-        Surface._current._unbind()
-        Surface._current = None
+    Surface.leave_current()
     with _collected_errors(glfw) as complaints:
         if not glfw.init():
             raise diagnose("opening a window", "; ".join(complaints))
