@@ -54,6 +54,7 @@ from .table import (
     POINT_COORDINATES,
     Patterns,
     Triangle,
+    points_on,
     splits_of,
     table_of,
     verify,
@@ -112,9 +113,7 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
     for position, edge in enumerate(sequence):
         start = edge
         end = (edge + 1) % 3
-        middle = 3 + 3 * edge
-        near_start = 4 + 3 * edge
-        near_end = 5 + 3 * edge
+        near_start, middle, near_end = points_on(edge)
         earlier = sequence[:position].count(edge)
         if earlier == 0:
             triangles = _cut_in_two(triangles, start, end, middle)

@@ -101,13 +101,17 @@ def splits_of(configuration: int) -> tuple[int, int, int]:
     return configuration % 3, configuration // 3 % 3, configuration // 9
 
 
+def points_on(edge: int) -> tuple[int, int, int]:
+    """Return the points on an edge that has been split twice, from start to end."""
+    middle = 3 + 3 * edge
+    return middle + 1, middle, middle + 2
+
+
 def outline(splits: tuple[int, int, int]) -> list[int]:
     """Return the points on the border of a triangle in order, beginning with corner 0."""
     points: list[int] = []
     for edge in range(3):
-        middle = 3 + 3 * edge
-        near_start = 4 + 3 * edge
-        near_end = 5 + 3 * edge
+        near_start, middle, near_end = points_on(edge)
         points.append(edge)
         points += ([], [middle], [near_start, middle, near_end])[splits[edge]]
     return points
@@ -199,10 +203,6 @@ class Patterns(NamedTuple):
     """Subtriangles of each row, shape (K,)."""
     subtriangles: Unsigned8
     """Points of the subtriangles, numbered as above, shape (K, most, 3); unused ones are 0."""
-
-    def subtriangles_of(self, row: int) -> Unsigned8:
-        """Subtriangles of one row, shape (M, 3)."""
-        return self.subtriangles[row, : self.counts[row]]
 
 
 def table_of(rows: list[list[Triangle]]) -> Patterns:

@@ -21,9 +21,14 @@ def states_of(length):
     return [k for k, sequence in enumerate(TABLES.sequences) if len(sequence) == length]
 
 
+def subtriangles_of(state):
+    """Subtriangles of a sequence, shape (M, 3)."""
+    return TABLES.patterns.subtriangles[state, : TABLES.patterns.counts[state]]
+
+
 def inner_lines(state):
     """Sides of subtriangles inside the triangle, as pairs of points."""
-    triangles = TABLES.patterns.subtriangles_of(state).tolist()
+    triangles = subtriangles_of(state).tolist()
     sides = [(t[k], t[(k + 1) % 3]) for t in triangles for k in range(3)]
     return {(a, b) for a, b in sides if a < b and (b, a) in sides}
 
@@ -44,7 +49,7 @@ def test_entries(length):
     """Every entry is a valid tessellation with as many subtriangles as in the 27-entry table."""
     for state in states_of(length):
         splits = coherence.splits_in(TABLES.sequences[state])
-        triangles = TABLES.patterns.subtriangles_of(state)
+        triangles = subtriangles_of(state)
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
         configuration = configuration_of(splits)
         assert len(triangles) == table.CONFIGURATION_TABLE.counts[configuration]
