@@ -282,8 +282,7 @@ def maps_in(
     if len(slope):
         steepest = max(float(np.percentile(abs(slope), steepest_percentile)), 1e-6)
     wrinkles = np.full((MAP_SIZE, MAP_SIZE, 4), (128, 128, 0, 0), np.uint8)
-    level = _levels_of(slope, steepest)
-    wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
+    wrinkles[texels.rows, texels.columns] = _wrinkle_texels(slope, steepest, found)
     light = np.asarray(PIL.Image.fromarray(light).resize(size[::-1]))
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
 
@@ -301,9 +300,8 @@ def maps_over(
     texels = texels_within(own, known.wrinkles.map.shape[:2])
     found = sampled(known.wrinkles.map, texels.interpolate(theirs.corners))
     slope = _slopes_in(known, found, theirs, own, texels)
-    level = _levels_of(slope, known.wrinkles.steepest)
     wrinkles = known.wrinkles.map.copy()
-    wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
+    wrinkles[texels.rows, texels.columns] = _wrinkle_texels(slope, known.wrinkles.steepest, found)
     return (
         replace(known.wrinkles, map=wrinkles),
         segments,
@@ -325,11 +323,14 @@ def _slopes_in(
     return changed
 
 
-def _levels_of(slope: Floats64, steepest: float) -> Unsigned8:
-    """Return slopes as bytes of a map of wrinkles; 255 stands for the slope `steepest`."""
+def _wrinkle_texels(slope: Floats64, steepest: float, known: Unsigned8) -> Unsigned8:
+    """Return texels of a map of wrinkles, (n, 4), with other slopes than `known` texels, (n, 4).
+
+    slope: new slopes along u and v, (n, 2). The byte 255 stands for the slope `steepest`.
+    """
     values = 128.0 + slope * (127.0 / steepest)
-    levels: Unsigned8 = values.round().clip(1, 255).astype(np.uint8)
-    return levels
+    levels = values.round().clip(1, 255).astype(np.uint8)
+    return np.column_stack([levels, known[:, 2:]])
 
 
 def _rates_at_corners(theirs: TextureLayout, own: TextureLayout) -> Floats64:
