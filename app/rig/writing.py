@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from risorius.geometry.arrays import Flags, Floats64
 
 from ..files import folder_atomically, written_atomically
 from .avatar import Avatar, FileHead, PrintLine, RigRequest, avatar_of
-from .bodies import EYE_BONES
+from .bodies import EYE_BONES, Shaped
 from .file_mesh import FileMeshWriter, root_matrix
 from .glb import Glb
 from .gltf_copy import GltfShapes, read_document
@@ -86,13 +87,23 @@ def _copied_gltf(avatar: Avatar, file: FileHead, title: str) -> bytes:
 
 def _add_scene(glb: Glb, avatar: Avatar) -> list[int]:
     """Add the surfaces of the built-in head or a person; return the nodes of the scene."""
-    pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes]
+    skeleton, roots = _add_surfaces(glb, avatar, avatar.shapes)
+    return [*skeleton.roots, *roots]
+
+
+def _add_surfaces(
+    glb: Glb, avatar: Avatar, shapes: Sequence[Shaped], *, skins: bool = True
+) -> tuple[Skeleton, list[int]]:
+    """Add surfaces and their bones; return the skeleton, and the other nodes without a parent.
+
+    skins: as in `Skeleton`.
+    """
+    pieces = [piece_of(avatar.scene, each, avatar.names) for each in shapes]
     used = {piece.bone for piece in pieces if piece.bone is not None}
-    skeleton = Skeleton(avatar.scene, used, glb)
+    skeleton = Skeleton(avatar.scene, used, glb, skins=skins)
     for eye in used & set(EYE_BONES):
         skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
-    roots = add_pieces(glb, avatar.scene, pieces, skeleton)
-    return [*skeleton.roots, *roots]
+    return skeleton, add_pieces(glb, avatar.scene, pieces, skeleton)
 
 
 def _add_file(glb: Glb, avatar: Avatar, file: FileHead, title: str) -> int:
@@ -141,12 +152,7 @@ def _is_of_role(file: FileHead, role: str) -> Flags:
 
 def _add_parts(glb: Glb, avatar: Avatar, file: FileHead) -> int:
     """Add built-in parts below a node that converts metres to the file's unit; return the node."""
-    pieces = [piece_of(avatar.scene, each, avatar.names) for each in avatar.shapes[1:]]
-    used = {piece.bone for piece in pieces if piece.bone is not None}
-    skeleton = Skeleton(avatar.scene, used, glb, skins=False)
-    for eye in used & set(EYE_BONES):
-        skeleton.note(eye, looks_of(avatar, eye, np.eye(3)))
-    add_pieces(glb, avatar.scene, pieces, skeleton)
+    skeleton, _ = _add_surfaces(glb, avatar, avatar.shapes[1:], skins=False)
     back = file.head.to_millimetres.inverse
     matrix = np.eye(4)
     matrix[:3, :3] = back.scale / METRES_PER_MILLIMETRE * back.rotation
