@@ -2,7 +2,7 @@
 
 The heads are the built-in head and a made person, and optionally MakeHuman's base mesh and a scan.
 Each head becomes an avatar, as with `risorius rig`, and the avatar's file is read again. All 68
-landmarks of each head are also guessed from five true ones.
+landmarks of each head are also guessed from six true ones.
 """
 
 from __future__ import annotations

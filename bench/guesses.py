@@ -1,4 +1,4 @@
-"""Measure the errors of landmarks that are guessed from five true points of a head."""
+"""Measure the errors of landmarks that are guessed from the first points of a head."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def lines_of(guesses: Sequence[Guess]) -> list[str]:
         rows.append((each.name, np.median(own), own.max(), *groups))
     columns = "|".join(f"{name}:6.1f" for name in LANDMARK_GROUPS if name != "all")
     return [
-        "Landmarks guessed from five true points, off [mm]: median and worst without the jaw,",
+        "Landmarks guessed from six true points, off [mm]: median and worst without the jaw,",
         "and means of groups.",
         "",
         *table(f"head:<18|median:7.1f|worst:6.1f|{columns}", rows),

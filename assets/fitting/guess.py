@@ -4,6 +4,11 @@
                   ->  most similar person (likely_face.py)
                   ->  warp of this person's face to the mesh
                   ->  landmarks of this person, moved by the warp, on the mesh
+                  ->  brows, moved like the placed points of brows
+
+Form does not show the height of brows: those of scans lie above the crest of the forehead, those
+of MakeHuman 8 mm below it. So one point of a brow is among the first points. It moves all brows,
+and nothing else, because a person with such brows has another form.
 
 In each step of the warp, points of the person's face move to the nearest points of the mesh with
 similar normals. A smoothing thin-plate spline follows these points. It bends more in each step.
@@ -30,9 +35,10 @@ from ..model import Head
 from .likely_face import FARTHEST_MATCH, LikelyFace
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
-# Outer corners of the eyes, tip of the nose, corners of the mouth. Everybody finds these landmarks,
-# and they are far apart in every direction.
-FIRST_LANDMARKS = (36, 45, 30, 48, 54)
+# Outer corners of the eyes, tip of the nose, corners of the mouth, middle of the right brow.
+# Everybody finds these landmarks, and they are far apart in every direction.
+FIRST_LANDMARKS = (36, 45, 30, 48, 54, 19)
+BROW_LANDMARKS = range(17, 27)  # of the right brow from outside in, of the left from inside out
 
 Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> point (3,) [unit of the mesh]
 
@@ -40,12 +46,12 @@ Known = Mapping[int, npt.ArrayLike]  # number of a landmark -> point (3,) [unit 
 def guess(mesh: Mesh, known: Known) -> Floats64:
     """Guess all 68 landmarks on a mesh; returns points [unit of the mesh], (68, 3).
 
-    known: placed landmarks, at least those in `FIRST_LANDMARKS`, which are returned
-    unchanged. If they form no face, raises AssetError.
+    known: placed landmarks, at least four that are not of brows, which are returned unchanged. If
+    they form no face, raises AssetError.
     """
     head = load("head")
     similarity = placing(known)
-    indices = sorted(known)
+    indices = [number for number in sorted(known) if number not in BROW_LANDMARKS]
     given = similarity.points(np.array([known[number] for number in indices]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
@@ -70,11 +76,15 @@ def guess(mesh: Mesh, known: Known) -> Floats64:
         laid = ThinPlateSpline(source, target, give).points(own)
     found = _feet(laid, head, head.landmarks, face.mesh, faces)
     found[indices] = face.given
+    brows = [number for number in BROW_LANDMARKS if number in known]
+    if brows:
+        given_brows = similarity.points(np.array([known[number] for number in brows]))
+        _move_brows(found, brows, face.moved.points(given_brows), face.mesh, faces)
     return similarity.inverse.points(face.moved.inverse.points(found))
 
 
 def placing(known: Known) -> Similarity:
-    """Find the similarity to the face space [mm] by four or more known landmarks.
+    """Find the similarity to the face space [mm] by four or more known landmarks without brows.
 
     Raises AssetError if the landmarks form no face, or the mirror image of a face.
     """
@@ -82,7 +92,7 @@ def placing(known: Known) -> Similarity:
     right = "right is the subject's own, on your left where the face looks at you"
     most_mean_distance = 14.0  # [mm] between known landmarks and those of the built-in head
     if off.mean() > most_mean_distance:
-        right_and_left = {"eyes": FIRST_LANDMARKS[:2], "corners of the mouth": FIRST_LANDMARKS[3:]}
+        right_and_left = {"eyes": FIRST_LANDMARKS[:2], "corners of the mouth": FIRST_LANDMARKS[3:5]}
         for pair, (a, b) in right_and_left.items():
             other, less = _landmark_similarity({**known, a: known[b], b: known[a]})
             if less.mean() <= most_mean_distance and not other.is_mirrored:
@@ -99,12 +109,13 @@ def placing(known: Known) -> Similarity:
 def _landmark_similarity(known: Known) -> tuple[Similarity, Floats64]:
     """Find the similarity from known landmarks to built-in ones, and its errors [mm], (n,)."""
     head = load("head")
-    indices = sorted(known)
+    indices = np.array(sorted(known))
     own = head.vertices[head.landmarks[indices]]
     given = np.array([known[number] for number in indices], dtype=np.float64)
     if not np.ptp(given, axis=0).any():
         raise AssetError("all landmarks are one point; give each its own place")
-    similarity = Similarity.between(given, own)
+    is_fitted = ~np.isin(indices, BROW_LANDMARKS)
+    similarity = Similarity.between(given[is_fitted], own[is_fitted])
     return similarity, np.linalg.norm(similarity.points(given) - own, axis=1)
 
 
@@ -151,6 +162,34 @@ def _feet(
     """
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
+
+
+def _move_brows(
+    found: Floats64, known: list[int], given: Floats64, vertices: Floats64, faces: Integers32
+) -> None:
+    """Move the brows among guessed landmarks (68, 3) as far as their n known landmarks, in place.
+
+    A brow without a known landmark moves as the mirror image of the other.
+
+    known: numbers of the known landmarks. given: their points [mm], (n, 3). vertices, faces: mesh.
+    """
+    motions = given - found[known]
+    is_right = np.array(known) < BROW_LANDMARKS[5]
+    for number in BROW_LANDMARKS:
+        own = is_right == (number < BROW_LANDMARKS[5])
+        if own.any():
+            places = np.array(known)[own]
+            motion = [np.interp(number, places, axis) for axis in motions[own].T]
+        else:
+            mirrored = BROW_LANDMARKS[0] + BROW_LANDMARKS[-1] - number
+            motion = [np.interp(mirrored, known, axis) for axis in motions.T]
+            motion[0] = -motion[0]
+        found[number] += motion
+    brows = list(BROW_LANDMARKS)
+    forward = np.zeros((len(brows), 3))
+    forward[:, 2] = 1.0
+    found[brows] = nearest_on(found[brows], forward, vertices, faces).interpolate(vertices)
+    found[known] = given
 
 
 def centred(vertices: Floats64, radius: float) -> Similarity:

@@ -80,7 +80,7 @@ def curves(viewer: Viewer) -> None:
 
 
 def landmarks(viewer: Viewer) -> None:
-    """Landmarks of a mesh, guessed from five points: the built-in head as an unknown mesh."""
+    """Landmarks of a mesh, guessed from six points: the built-in head as an unknown mesh."""
     head = assets.load("head")
     fine = head.finer(1)
     lines = [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in fine.vertices]

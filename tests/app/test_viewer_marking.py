@@ -61,7 +61,7 @@ def true_places():
 
 
 def mark_first(marking):
-    """Place the first five landmarks exactly, in the order of the questions."""
+    """Place the first six landmarks exactly, in the order of the questions."""
     for number in FIRST_LANDMARKS:
         assert marking.current == number
         marking.place(number, marking.placing.points(true_places()[number]))
@@ -265,7 +265,7 @@ class TestInTheWindow:
         assert "There is no skin here" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(self, viewer, mesh, tmp_path):
-        """A head is marked by a drop, five clicks, a drag, undo and save; capture draws it."""
+        """A head is marked by a drop, six clicks, a drag, undo and save; capture draws it."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.mark_first(viewer)

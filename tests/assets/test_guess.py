@@ -18,7 +18,7 @@ JAW_COUNT = 17  # number of jaw landmarks, which come first and have no exact pl
 
 
 def errors(mesh, true):
-    """Errors of the landmarks guessed from the first five points."""
+    """Errors of the landmarks guessed from the first six points."""
     found = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
     off = norm(found - true, axis=1)
     assert not off[list(FIRST_LANDMARKS)].max() > 1e-9 * np.abs(true).max()
@@ -65,6 +65,20 @@ def test_unit_axes_and_other_pieces_do_not_matter():
     skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
     gap = norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
     assert gap.max() < 1e-3 * METRES_PER_MILLIMETRE
+
+
+def test_one_point_of_a_brow_moves_both(head):
+    """If brows lie 12 mm lower than usual, a point of one moves both, and no other landmark."""
+    mesh = Mesh(head.vertices, head.faces)
+    true = head.vertices[head.landmarks]
+    lowered = true[17:27] - [0.0, 12.0, 0.0]
+    forward = np.tile([0.0, 0.0, 1.0], (10, 1))
+    brows = nearest_on(lowered, forward, mesh.vertices, mesh.faces).interpolate(mesh.vertices)
+    usual = guess(mesh, {number: true[number] for number in FIRST_LANDMARKS})
+    moved = guess(mesh, {**{number: true[number] for number in FIRST_LANDMARKS}, 19: brows[2]})
+    assert norm(moved[17:27] - brows, axis=1).max() < 2.0
+    usual[17:27] = moved[17:27]
+    assert moved == approx(usual)
 
 
 @pytest.mark.slow

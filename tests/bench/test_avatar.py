@@ -22,7 +22,7 @@ def test_the_built_in_head_keeps_its_vertices():
     text = avatar.report([row])
     assert "jawOpen + mouthPucker" in text and "Speech" in text
     assert row.guess.off[17:].max() < 2.0
-    assert "Landmarks guessed from five true points" in text
+    assert "Landmarks guessed from six true points" in text
 
 
 def test_turned_persons_are_guessed_as_others():

@@ -24,6 +24,7 @@ WHITE_INK = (1.0, 1.0, 1.0)
 POINT_NAMES = {  # names of the first points
     **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
     **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
+    **{19: "Middle of the right brow"},
 }
 SIDE_NAMES = {
     -1.0: "the person's right: on your left as the face looks at you",
