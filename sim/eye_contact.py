@@ -16,8 +16,10 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products
+from ..geometry.records import joined
 from ..jit import njit
-from .skull import Eyeball, Triple, ball_surface
+from .rig import Triple
+from .skull import Eyeball, ball_surface
 from .state import State
 from .surface import SkinSurface
 
@@ -103,12 +105,13 @@ def _near_vertices(
     surface: SkinSurface, eyeballs: tuple[Eyeball, ...], near: list[Integers64]
 ) -> NearVertices:
     """Measure the vertices near each ball at rest; near: their indices, (n,) for each ball."""
-    rows = [(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0))]
+    nobody = np.zeros(0, np.int32)
+    found = [NearVertices(nobody, nobody, np.zeros(0), np.zeros(0))]
     for number, (ball, vertex) in enumerate(zip(eyeballs, near, strict=True)):
         least, sunk = _kept_out(surface.positions[vertex], ball)
-        rows.append((vertex, np.full(len(vertex), number), least, sunk))
-    vertex, eye, least, sunk = (np.concatenate(column) for column in zip(*rows, strict=True))
-    return NearVertices(vertex.astype(np.int32), eye.astype(np.int32), least, sunk)
+        eye = np.full(len(vertex), number, np.int32)
+        found.append(NearVertices(vertex.astype(np.int32), eye, least, sunk))
+    return joined(found)
 
 
 def _long_triangles(

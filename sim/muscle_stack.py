@@ -28,6 +28,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
 from ..geometry.polylines import arc_lengths
+from ..geometry.records import joined
 from .fibres import FIBRE_POINTS, SAMPLE_COUNT, AttachedPoints, Stack, over_skin
 from .muscles import PlacedLine, PlacedMuscle, attach
 from .surface import SkinSurface
@@ -139,22 +140,22 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
                 steady=np.zeros((0, 3)),
             )
         ]
-    joined = _Carried(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    points = joined(found)
     held = np.zeros(line_count * FIBRE_POINTS)
-    np.add.at(held, joined.at, joined.weight)
-    most = np.maximum(held, 1.0)[joined.at]
-    weight = joined.weight / most
+    np.add.at(held, points.at, points.weight)
+    most = np.maximum(held, 1.0)[points.at]
+    weight = points.weight / most
     least_weight = 0.02  # weight of a displacement; smaller ones are dropped
     on = np.flatnonzero(weight > least_weight)
-    owner, point = np.divmod(joined.at[on], FIBRE_POINTS)
-    sorting = np.lexsort((point, joined.line[on], owner))
+    owner, point = np.divmod(points.at[on], FIBRE_POINTS)
+    sorting = np.lexsort((point, points.line[on], owner))
     on = on[sorting]
     return Stack(
         rows=np.searchsorted(owner[sorting], np.arange(line_count + 1)).astype(np.uint32),
         point=point[sorting].astype(np.uint32),
-        line=joined.line[on].astype(np.uint32),
-        sample=joined.sample[on],
-        place=joined.place[on],
+        line=points.line[on].astype(np.uint32),
+        sample=points.sample[on],
+        place=points.place[on],
         weight=weight[on],
-        steady=joined.steady[on] / most[on, None],
+        steady=points.steady[on] / most[on, None],
     )

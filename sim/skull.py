@@ -24,7 +24,7 @@ from ..geometry.read_only import read_only
 from ..jit import njit
 from .coordinates import FaceSpace
 from .landmarks import EYE_LANDMARKS, MIRRORED_LANDMARKS, UPPER_LIP_MIDDLE, Side
-from .rig import Eyes, HeadJoint, Jaw
+from .rig import Eyes, HeadJoint, Jaw, Triple
 from .surface import SkinSurface
 
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
@@ -32,7 +32,6 @@ HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 
 LATERAL_AXIS = (1.0, 0.0, 0.0)
 UP_AXIS = (0.0, 1.0, 0.0)
 
-Triple = tuple[float, float, float]
 Numbers = TypeVar("Numbers", float, Floats64)
 
 

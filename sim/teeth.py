@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32
+from ..geometry.records import joined
 from . import checked
 from .coordinates import FaceSpace
 from .skull import RigidMotion
@@ -39,7 +40,7 @@ class Teeth(NamedTuple):
         in_jaw = (points - mandible.shift) @ mandible.rotation
         points = np.where(self.lower[:, None], in_jaw, points)
         width, depth, axis, low, high = self.arch.T
-        radius_ratio = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
+        radius_ratio = _relative_distances(points, self.arch)
         met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
         sunk = np.where(met, (self.least - radius_ratio) * np.minimum(width, depth), 0.0)
         return float(max(sunk.max(), 0.0))
@@ -50,19 +51,17 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
 
     Skin that starts inside an arch may not sink deeper.
     """
-    vertices = [np.zeros(0, dtype=np.int64)]
-    is_lower = [np.zeros(0, dtype=np.bool_)]
-    arches = [np.zeros((0, 5))]
-    resting = [np.zeros(0)]
+    found = [Teeth(np.zeros(0, np.int32), np.zeros(0, np.bool_), np.zeros((0, 5)), np.zeros(0))]
     given = () if parts is None else parts
     teeth_reach = 18.0  # mm around an arch in which skin is watched
     bones = ("cranium", "mandible")
     for part in checked.several("head.parts", given, ("name", "bone", "vertices")):
         if str(part.name).startswith("teeth_") and part.bone in bones:
-            found = checked.numbers(f"head.parts: {part.name}", part.vertices, (None, 3), "(n, 3)")
-            if not len(found):
+            what = f"head.parts: {part.name}"
+            points = checked.numbers(what, part.vertices, (None, 3), "(n, 3)")
+            if not len(points):
                 continue
-            arch = _arch_of_teeth(space.to_standard(found))
+            arch = _arch_of_teeth(space.to_standard(points))
             inside = _relative_distances(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
             width, depth, _, low, high = arch
@@ -71,16 +70,16 @@ def watch_teeth(parts: Any, surface: SkinSurface, space: FaceSpace) -> Teeth:
             near &= off[:, 1] < high + teeth_reach
             near &= off[:, 2] > 0.0
             watched = np.flatnonzero(near)
-            vertices.append(watched)
-            is_lower.append(np.full(len(watched), part.bone == "mandible"))
-            arches.append(np.tile(arch, (len(watched), 1)))
-            resting.append(np.minimum(inside[watched], 1.0))
-    return Teeth(
-        np.concatenate(vertices).astype(np.int32),
-        np.concatenate(is_lower),
-        np.vstack(arches),
-        np.concatenate(resting),
-    )
+            count = len(watched)
+            found.append(
+                Teeth(
+                    vertex=watched.astype(np.int32),
+                    lower=np.full(count, part.bone == "mandible"),
+                    arch=np.tile(arch, (count, 1)),
+                    least=np.minimum(inside[watched], 1.0),
+                )
+            )
+    return joined(found)
 
 
 def _arch_of_teeth(teeth: Floats64) -> Floats64:
@@ -95,6 +94,10 @@ def _arch_of_teeth(teeth: Floats64) -> Floats64:
 
 
 def _relative_distances(points: Floats64, arch: Floats64) -> Floats64:
-    """Distance from the axis, relative to the arch's surface there, shape (n,)."""
-    radius_ratio: Floats64 = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
+    """Distance from the axis, relative to the arch's surface there, shape (n,).
+
+    arch: of all points, (5,), or of each point, (n, 5), as in `Teeth`.
+    """
+    width, depth, axis = arch.T[:3]
+    radius_ratio: Floats64 = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
     return radius_ratio

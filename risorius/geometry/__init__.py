@@ -15,6 +15,7 @@ normals.py        cross products of triangles, normals of vertices, points on tr
 polylines.py      lengths along polylines
 rays.py           where lines meet triangles
 read_only.py      views that cannot be written
+records.py        named tuples of arrays
 sides.py          the sides and edges of triangles, as pairs of vertices
 texels.py         the texels of a picture that triangles lie over
 tones.py          colours of skin, composed texel by texel
