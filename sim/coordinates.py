@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
+from ..geometry.vectors import plus, rotated, toward, write_row
 from ..jit import njit
 
 
@@ -111,9 +112,7 @@ def to_posed_head(
         px = head_rest[i, 0] + dx * axes[0, 0] + dy * axes[1, 0] + dz * axes[2, 0]
         py = head_rest[i, 1] + dx * axes[0, 1] + dy * axes[1, 1] + dz * axes[2, 1]
         pz = head_rest[i, 2] + dx * axes[0, 2] + dy * axes[1, 2] + dz * axes[2, 2]
-        s = head_weight[i, 0]
-        for k in range(3):
-            turned = turn[k, 0] * px + turn[k, 1] * py + turn[k, 2] * pz + turn[k, 3]
-            here = px if k == 0 else (py if k == 1 else pz)
-            out[i, k] = here + s * (turned - here)
+        here = px, py, pz
+        turned = plus(rotated(turn, here), (turn[0, 3], turn[1, 3], turn[2, 3]))
+        write_row(out, i, toward(here, turned, head_weight[i, 0]))
     return broken

@@ -17,6 +17,7 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.normals import cross_products
 from ..geometry.records import joined
+from ..geometry.vectors import Vector, add_to_row, dot, less, plus, row_of, times
 from ..jit import njit
 from .rig import Triple
 from .skull import Eyeball, ball_surface
@@ -201,8 +202,8 @@ def keep_out_of_eyeballs(state: State, eyes: EyeContact, looks: Floats64) -> Non
         i = near.vertex[c]
         e = near.eye[c]
         ball = (balls.radii[e], balls.irises[e], balls.tops[e])
-        away = between(balls.centres[e], x[i])
-        depth = depth_in_ball(away, looks[e], ball, (near.least[c], near.sunk[c]))
+        away = less(row_of(x, i), 1.0, row_of(balls.centres, e))
+        depth = depth_in_ball(away, row_of(looks, e), ball, (near.least[c], near.sunk[c]))
         if depth > 0.0:
             push_out(state, i, away, depth)
 
@@ -223,18 +224,19 @@ def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
     for t in range(len(long.faces)):
         a, b, c = long.faces[t]
         e = long.eye[t]
-        centre = balls.centres[e]
-        nearest = min(length(between(centre, x[a])), length(between(centre, x[b])))
-        nearest = min(nearest, length(between(centre, x[c])))
-        if nearest > long.reach[t]:
+        centre = row_of(balls.centres, e)
+        to_a = length(less(row_of(x, a), 1.0, centre))
+        to_b = length(less(row_of(x, b), 1.0, centre))
+        to_c = length(less(row_of(x, c), 1.0, centre))
+        if min(to_a, to_b, to_c) > long.reach[t]:
             continue
         ball = (balls.radii[e], balls.irises[e], balls.tops[e])
         deepest = 0.0
         where = 0
         for s in range(len(shares)):
-            away = mixed(x, (a, b, c), shares[s], centre)
+            away = less(in_triangle(x, (a, b, c), shares[s]), 1.0, centre)
             kept = (long.least[t, s], long.sunk[t, s])
-            depth = depth_in_ball(away, looks[e], ball, kept)
+            depth = depth_in_ball(away, row_of(looks, e), ball, kept)
             if depth > deepest:
                 deepest = depth
                 where = s
@@ -252,65 +254,51 @@ def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
         for row in range(len(long.corners)):
             i = long.corners[row]
             if lift[i, 0] > 0.0:
-                push_out(state, i, between(balls.centres[long.corner_eye[row]], x[i]), lift[i, 0])
+                centre = row_of(balls.centres, long.corner_eye[row])
+                push_out(state, i, less(row_of(x, i), 1.0, centre), lift[i, 0])
 
 
 @njit
-def between(start: Floats64, end: Floats64) -> Triple:
-    """The vector from one point (3,) to another."""
-    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
+def in_triangle(x: Floats64, corners: tuple[int, int, int], weight: Floats64) -> Vector:
+    """The point of a triangle with barycentric coordinates (3,)."""
+    a, b, c = corners
+    first_two = plus(times(weight[0], row_of(x, a)), times(weight[1], row_of(x, b)))
+    return plus(first_two, times(weight[2], row_of(x, c)))
 
 
 @njit
-def mixed(x: Floats64, at: tuple[int, int, int], weight: Floats64, centre: Floats64) -> Triple:
-    """The vector from `centre` (3,) to a point of a triangle with barycentric coordinates (3,)."""
-    a, b, c = at
-    return (
-        weight[0] * x[a, 0] + weight[1] * x[b, 0] + weight[2] * x[c, 0] - centre[0],
-        weight[0] * x[a, 1] + weight[1] * x[b, 1] + weight[2] * x[c, 1] - centre[1],
-        weight[0] * x[a, 2] + weight[1] * x[b, 2] + weight[2] * x[c, 2] - centre[2],
-    )
-
-
-@njit
-def length(vector: Triple) -> float:
+def length(vector: Vector) -> float:
     """Length of a vector."""
-    return math.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    return math.sqrt(dot(vector, vector))
 
 
 @njit
-def depth_in_ball(away: Triple, look: Floats64, ball: Triple, kept: tuple[float, float]) -> float:
+def depth_in_ball(away: Vector, look: Vector, ball: Triple, kept: tuple[float, float]) -> float:
     """How far a point must move outward [mm], 0 or less for a point outside an eyeball.
 
-    away: from the ball's centre [mm]. look: unit vector along which the ball looks, (3,). ball:
+    away: from the ball's centre [mm]. look: unit vector along which the ball looks. ball:
     radii of ball and iris, and distance that skin keeps from the centre before the pupil [mm].
     kept: the point's `least` and `sunk` of `NearVertices` [mm].
     """
     distance = length(away)
     if distance >= ball[2] or distance == 0.0:
         return 0.0
-    ahead = (away[0] * look[0] + away[1] * look[1] + away[2] * look[2]) / distance
+    ahead = dot(away, look) / distance
     surface = ball_surface(ahead, ball[0], ball[1]) + EYE_CLEARANCE
     depth: float = max(kept[0], surface - kept[1]) - distance
     return depth
 
 
 @njit
-def push_out(state: State, i: int, away: Triple, way: float) -> None:
+def push_out(state: State, i: int, away: Vector, way: float) -> None:
     """Move a vertex by `way` [mm] along the vector `away`, and stop its approach against it."""
-    part = way / length(away)
-    for k in range(3):
-        state.x[i, k] += part * away[k]
+    add_to_row(state.x, i, times(way / length(away), away))
     stop_approach(state.v, i, away)
 
 
 @njit
-def stop_approach(v: Floats64, i: int, out: tuple[float, float, float]) -> None:
+def stop_approach(v: Floats64, i: int, out: Vector) -> None:
     """Remove the component of a vertex's velocity that points against `out`, the way out."""
-    dx, dy, dz = out
-    squared = dx * dx + dy * dy + dz * dz
-    approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
+    approach = dot(row_of(v, i), out) / max(dot(out, out), 1e-18)
     if approach < 0.0:
-        v[i, 0] -= approach * dx
-        v[i, 1] -= approach * dy
-        v[i, 2] -= approach * dz
+        add_to_row(v, i, times(-approach, out))

@@ -25,11 +25,12 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..geometry.directions import unit_vectors
+from ..geometry.vectors import Vector, add_to_row, plus, rotated, row_of, times, toward, write_row
 from ..jit import njit
 from .landmarks import Side
 from .polylines import nearest_on_line, reached_along
 from .rig import Fibre
-from .skull import RigidMotion
+from .skull import RigidMotion, moved_rigidly
 from .surface import SkinSurface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
@@ -283,25 +284,23 @@ def carry_line(
         p = point[row]
         a = activation[muscle[c]]
         if a > 0.0:
-            sx = a * steady[row, 0]
-            sy = a * steady[row, 1]
-            sz = a * steady[row, 2]
-            w = mandible[p]
-            own[p, 0] += sx + w * (turn[0, 0] * sx + turn[0, 1] * sy + turn[0, 2] * sz - sx)
-            own[p, 1] += sy + w * (turn[1, 0] * sx + turn[1, 1] * sy + turn[1, 2] * sz - sy)
-            own[p, 2] += sz + w * (turn[2, 0] * sx + turn[2, 1] * sy + turn[2, 2] * sz - sz)
+            moved = times(a, row_of(steady, row))
+            add_to_row(own, p, toward(moved, rotated(turn, moved), mandible[p]))
             if contraction[c] > 0.0:
-                s = min(np.uint32(sample[row]), contracted.shape[1] - 2)
-                far = weight[row] * (sample[row] - s)
-                near = weight[row] - far
-                for k in range(3):
-                    own[p, k] += near * contracted[c, s, k] + far * contracted[c, s + 1, k]
+                add_to_row(own, p, along_line(contracted[c], sample[row], weight[row]))
         if is_carried[c]:
-            s = min(np.uint32(place[row]), carried.shape[1] - 2)
-            far = weight[row] * (place[row] - s)
-            near = weight[row] - far
-            for k in range(3):
-                own[p, k] += near * carried[c, s, k] + far * carried[c, s + 1, k]
+            add_to_row(own, p, along_line(carried[c], place[row], weight[row]))
+
+
+@njit
+def along_line(displacements: Floats64, place: float, weight: float) -> Vector:
+    """Interpolate displacements along a line (n, 3) at a fractional row; multiply by a weight."""
+    before = min(int(place), len(displacements) - 2)
+    far = weight * (place - before)
+    near = weight - far
+    return plus(
+        times(near, row_of(displacements, before)), times(far, row_of(displacements, before + 1))
+    )
 
 
 @njit
@@ -309,15 +308,9 @@ def follow_bones(
     points: Floats64, weight: Floats64, mandible: RigidMotion, moved: Floats64
 ) -> None:
     """Carry the points of a line by its bones; `weight`: the mandible's weight at each point."""
-    turn = mandible.rotation
-    shift = mandible.shift
     for p in range(len(points)):
-        x = points[p, 0]
-        y = points[p, 1]
-        z = points[p, 2]
-        for k in range(3):
-            to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
-            moved[p, k] = points[p, k] + weight[p] * (to - points[p, k])
+        point = row_of(points, p)
+        write_row(moved, p, toward(point, moved_rigidly(mandible, point), weight[p]))
 
 
 @njit

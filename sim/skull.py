@@ -21,6 +21,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
+from ..geometry.vectors import Vector, plus, rotated, vector_of
 from ..jit import njit
 from .coordinates import FaceSpace
 from .landmarks import EYE_LANDMARKS, MIRRORED_LANDMARKS, UPPER_LIP_MIDDLE, Side
@@ -225,6 +226,12 @@ def move_mandible(
     for k in range(3):
         shift[k] += values[0] * glides[0][k] + values[1] * glides[1][k] + values[2] * glides[2][k]
     return turn, shift
+
+
+@njit
+def moved_rigidly(motion: RigidMotion, point: Vector) -> Vector:
+    """A point in the standard space after a motion [mm]."""
+    return plus(rotated(motion.rotation, point), vector_of(motion.shift))
 
 
 @njit

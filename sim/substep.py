@@ -26,6 +26,17 @@ import math
 
 import numpy as np
 
+from ..geometry.vectors import (
+    add_to_row,
+    dot,
+    less,
+    rotated,
+    rotated_back,
+    row_of,
+    times,
+    vector_of,
+    write_row,
+)
 from ..jit import njit
 from .contact import SLIDE_DISTANCE
 from .eye_contact import keep_out_of_eyeballs, lift_triangles, stop_approach
@@ -101,20 +112,13 @@ def tissue_forces(state: State, springs: TissueSprings) -> None:
     tangential = springs.tangential
     normal = springs.normal
     for i in range(len(x)):
-        dx = x[i, 0] - carried[i, 0]
-        dy = x[i, 1] - carried[i, 1]
-        dz = x[i, 2] - carried[i, 2]
-        offset[i, 0] = dx
-        offset[i, 1] = dy
-        offset[i, 2] = dz
-        nx = normals[i, 0]
-        ny = normals[i, 1]
-        nz = normals[i, 2]
-        across = (normal[i] - tangential[i]) * (dx * nx + dy * ny + dz * nz)
+        away = less(row_of(x, i), 1.0, row_of(carried, i))
+        write_row(offset, i, away)
+        outward = row_of(normals, i)
+        across = (normal[i] - tangential[i]) * dot(away, outward)
         along = tangential[i] + hold[i]
-        force[i, 0] = pull[i, 0] - along * dx - across * nx
-        force[i, 1] = pull[i, 1] - along * dy - across * ny
-        force[i, 2] = pull[i, 2] - along * dz - across * nz
+        without_normal = less(row_of(pull, i), along, away)
+        write_row(force, i, less(without_normal, across, outward))
 
 
 @njit(fastmath={"contract"})
@@ -315,36 +319,20 @@ def keep_out_of_teeth(state: State, teeth: Teeth, mandible: RigidMotion) -> None
         axis = arch[c, 2]
         low = arch[c, 3]
         high = arch[c, 4]
-        px = x[i, 0]
-        py = x[i, 1]
-        pz = x[i, 2]
+        point = row_of(x, i)
         if teeth.lower[c]:  # into the mandible's own space
-            dx = px - shift[0]
-            dy = py - shift[1]
-            dz = pz - shift[2]
-            px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
-            py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz
-            pz = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
-        beyond = max(low - py, py - high, 0.0)
-        ahead = pz - axis
+            point = rotated_back(turn, less(point, 1.0, vector_of(shift)))
+        aside, height, forward = point
+        beyond = max(low - height, height - high, 0.0)
+        ahead = forward - axis
         if beyond >= tooth_fade or ahead <= 0.0:
             continue
-        radius_ratio = np.sqrt((px / width) ** 2 + (ahead / depth) ** 2)
+        radius_ratio = np.sqrt((aside / width) ** 2 + (ahead / depth) ** 2)
         sunk = (teeth.least[c] - radius_ratio) * (1.0 - beyond / tooth_fade)
         if sunk <= 0.0 or radius_ratio < least_ratio:
             continue
-        out = sunk / radius_ratio
-        dx = out * px
-        dy = 0.0
-        dz = out * ahead
+        out = times(sunk / radius_ratio, (aside, 0.0, ahead))
         if teeth.lower[c]:
-            ax = turn[0, 0] * dx + turn[0, 2] * dz
-            ay = turn[1, 0] * dx + turn[1, 2] * dz
-            az = turn[2, 0] * dx + turn[2, 2] * dz
-            dx = ax
-            dy = ay
-            dz = az
-        x[i, 0] += dx
-        x[i, 1] += dy
-        x[i, 2] += dz
-        stop_approach(v, i, (dx, dy, dz))
+            out = rotated(turn, out)
+        add_to_row(x, i, out)
+        stop_approach(v, i, out)

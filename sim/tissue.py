@@ -30,10 +30,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Unsigned32
+from ..geometry.vectors import dot, rotated, row_of, times, toward, write_row
 from ..jit import njit
 from .polylines import polyline_distance
 from .rig import Tissue
-from .skull import RigidMotion
+from .skull import RigidMotion, moved_rigidly
 from .state import State
 from .surface import SkinSurface
 
@@ -131,28 +132,12 @@ def carry(
     """Move the far ends of the tissue springs with the mandible, each vertex by its weight."""
     carried = state.carried
     carried_normals = state.normals
-    turn = mandible.rotation
-    shift = mandible.shift
     for i in range(len(rest)):
-        w = weight[i]
-        x = rest[i, 0]
-        y = rest[i, 1]
-        z = rest[i, 2]
-        nx = normals[i, 0]
-        ny = normals[i, 1]
-        nz = normals[i, 2]
-        if w == 0.0:
-            for k in range(3):
-                carried[i, k] = rest[i, k]
-                carried_normals[i, k] = normals[i, k]
-            continue
-        length = 0.0
-        for k in range(3):
-            to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
-            carried[i, k] = rest[i, k] + w * (to - rest[i, k])
-            n = turn[k, 0] * nx + turn[k, 1] * ny + turn[k, 2] * nz
-            carried_normals[i, k] = normals[i, k] + w * (n - normals[i, k])
-            length += carried_normals[i, k] ** 2
-        inverse = 1.0 / np.sqrt(length)
-        for k in range(3):
-            carried_normals[i, k] *= inverse
+        point = row_of(rest, i)
+        normal = row_of(normals, i)
+        if weight[i] > 0.0:
+            point = toward(point, moved_rigidly(mandible, point), weight[i])
+            normal = toward(normal, rotated(mandible.rotation, normal), weight[i])
+            normal = times(1.0 / np.sqrt(dot(normal, normal)), normal)
+        write_row(carried, i, point)
+        write_row(carried_normals, i, normal)

@@ -58,6 +58,24 @@ def times(factor: Any, v: Vector) -> Vector:
 
 
 @njit
+def toward(start: Vector, end: Vector, fraction: Any) -> Vector:
+    """Go a fraction of the way from start to end."""
+    return plus(start, times(fraction, less(end, 1.0, start)))
+
+
+@njit
+def rotated(turn: Floats64, v: Vector) -> Vector:
+    """Product of a matrix, whose first three columns count, and a vector."""
+    return dot(row_of(turn, 0), v), dot(row_of(turn, 1), v), dot(row_of(turn, 2), v)
+
+
+@njit
+def rotated_back(turn: Floats64, v: Vector) -> Vector:
+    """Product of the transposed matrix (3, 3) and a vector."""
+    return rotated(turn.T, v)
+
+
+@njit
 def mix(start: Vector, end: Vector, fraction: Any) -> Vector:
     """Interpolate linearly from start (fraction 0) to end (fraction 1); exact at both."""
     if fraction == ONE:  # without blending, points are always at their final positions
@@ -93,6 +111,12 @@ def unit_in_double(x: float, y: float, z: float) -> Vector:
 def row_of(rows: Rows, k: Number, first: int = 0) -> Vector:
     """Three numbers of row k, from column `first` on."""
     return rows[k, first], rows[k, first + 1], rows[k, first + 2]
+
+
+@njit
+def vector_of(values: Floats64) -> Vector:
+    """The three numbers of an array."""
+    return values[0], values[1], values[2]
 
 
 @njit
