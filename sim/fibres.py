@@ -25,7 +25,19 @@ import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ..geometry.directions import unit_vectors
-from ..geometry.vectors import Vector, add_to_row, plus, rotated, row_of, times, toward, write_row
+from ..geometry.vectors import (
+    Vector,
+    add_to_row,
+    difference,
+    dot,
+    less,
+    plus,
+    rotated,
+    row_of,
+    times,
+    toward,
+    write_row,
+)
 from ..jit import njit
 from .landmarks import Side
 from .polylines import nearest_on_line, reached_along
@@ -187,20 +199,18 @@ def hang_on_fibre(
         high[axis] = points[:, axis].max()
     farthest = cut_widths**2 * (hold.width**2 + hold.beyond**2)
     last = reached[end] - reached[end - 1]
-    foot = np.empty(3)
+    step_x, step_y, step_z = difference(points, end - 1, end)
+    ahead = step_x / last, step_y / last, step_z / last
     for n in range(len(attached.positions)):
-        place = attached.positions[n]
+        place = row_of(attached.positions, n)
         outside = 0.0  # of the fibre's box: it reaches a tenth of the skin
         for axis in range(3):
             off = max(low[axis] - place[axis], 0.0, place[axis] - high[axis])
             outside += off * off
         if outside > farthest:
             continue
-        squared, along = nearest_on_line(points, reached, place, foot)
-        past = 0.0
-        for axis in range(3):
-            ahead = (points[end, axis] - points[end - 1, axis]) / last
-            past += (place[axis] - points[end, axis]) * ahead
+        squared, along, foot = nearest_on_line(points, reached, place)
+        past = dot(less(place, 1.0, row_of(points, end)), ahead)
         reach = squared / hold.width**2
         if along >= 1.0 - 1e-12 and past > 0.0:
             reach = max(squared - past**2, 0.0) / hold.width**2 + (past / hold.beyond) ** 2
@@ -213,9 +223,8 @@ def hang_on_fibre(
         bulge += hold.lift
         weight[n] = held
         arc[n] = along
-        for axis in range(3):
-            steady[n, axis] = held * (hold.drawn * along) * (foot[axis] - place[axis])
-            steady[n, axis] += held * bulge * attached.normals[n, axis]
+        drawn = times(held * (hold.drawn * along), less(foot, 1.0, place))
+        write_row(steady, n, plus(drawn, times(held * bulge, row_of(attached.normals, n))))
 
 
 @njit
@@ -324,10 +333,8 @@ def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats
     arc = np.empty(count)
     arc[0] = 0.0
     for p in range(1, count):
-        dx = moved[p, 0] - moved[p - 1, 0]
-        dy = moved[p, 1] - moved[p - 1, 1]
-        dz = moved[p, 2] - moved[p - 1, 2]
-        arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
+        along = difference(moved, p - 1, p)
+        arc[p] = arc[p - 1] + np.sqrt(dot(along, along))
     remaining = max(1.0 - lost, LEAST_ARC)
     fixed = fixed_at * arc[count - 1]
     # `there` and `here` only grow, so each search continues from its last segment.
@@ -342,7 +349,6 @@ def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats
             far += 1
         u = (there - arc[near - 1]) / max(arc[near] - arc[near - 1], 1e-12)
         t = (here - arc[far - 1]) / max(arc[far] - arc[far - 1], 1e-12)
-        for k in range(3):
-            to = moved[near - 1, k] + u * (moved[near, k] - moved[near - 1, k])
-            at = moved[far - 1, k] + t * (moved[far, k] - moved[far - 1, k])
-            displacement[s, k] = to - at
+        to = toward(row_of(moved, near - 1), row_of(moved, near), u)
+        at = toward(row_of(moved, far - 1), row_of(moved, far), t)
+        write_row(displacement, s, less(to, 1.0, at))

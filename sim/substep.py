@@ -26,6 +26,7 @@ import math
 
 import numpy as np
 
+from ..geometry.arrays import Floats64
 from ..geometry.vectors import (
     add_to_row,
     dot,
@@ -38,7 +39,7 @@ from ..geometry.vectors import (
     write_row,
 )
 from ..jit import njit
-from .contact import SLIDE_DISTANCE
+from .contact import SLIDE_DISTANCE, LipPairs
 from .eye_contact import keep_out_of_eyeballs, lift_triangles, stop_approach
 from .skin_model import SkinModel, Tick
 from .skull import RigidMotion
@@ -217,8 +218,7 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         a = lips.beside[p, 0]
         b = lips.beside[p, 1]
         w = lips.weight[p]
-        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        inverse /= lips.averaging[p]
+        inverse = inverse_mass(lips, p, mass) / lips.averaging[p]
         for k in range(3):
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
@@ -238,6 +238,16 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         i = lips.members[row]
         for k in range(3):
             v[i, k] += change[i, k]
+
+
+@njit
+def inverse_mass(lips: LipPairs, p: int, mass: Floats64) -> float:
+    """The inverse mass of a pair of lips, where an impulse parts its vertex and its point."""
+    w = lips.weight[p]
+    vertex = 1.0 / mass[lips.vertex[p]]
+    first = w * w / mass[lips.beside[p, 0]]
+    second = (1.0 - w) * (1.0 - w) / mass[lips.beside[p, 1]]
+    return float(vertex + first + second)
 
 
 @njit
@@ -282,7 +292,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
         if not crossed:
             change[:] = 0.0
             crossed = True
-        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
+        inverse = inverse_mass(lips, p, mass)
         push = below * full * lips.averaging[p] * deep / inverse
         approach = below * (v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1])
         stop = below * full * lips.averaging[p] * max(approach, 0.0) / inverse

@@ -20,6 +20,7 @@ from .arrays import Floats64, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
 from .read_only import read_only
+from .vectors import dot, less, vector_of
 
 LEAF_SIZE = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
@@ -229,22 +230,17 @@ def closest_on_triangle(
     point: Floats64, a: Floats64, b: Floats64, c: Floats64
 ) -> tuple[float, float, float]:
     """Barycentric coordinates of the point of triangle a, b, c that is closest to another point."""
-    ux = b[0] - a[0]
-    uy = b[1] - a[1]
-    uz = b[2] - a[2]
-    vx = c[0] - a[0]
-    vy = c[1] - a[1]
-    vz = c[2] - a[2]
-    wx = point[0] - a[0]
-    wy = point[1] - a[1]
-    wz = point[2] - a[2]
-    d1 = ux * wx + uy * wy + uz * wz
-    d2 = vx * wx + vy * wy + vz * wz
+    first = vector_of(a)
+    ab = less(vector_of(b), 1.0, first)
+    ac = less(vector_of(c), 1.0, first)
+    away = less(vector_of(point), 1.0, first)
+    d1 = dot(ab, away)
+    d2 = dot(ac, away)
     if d1 <= 0.0 and d2 <= 0.0:
         return 1.0, 0.0, 0.0
-    uu = ux * ux + uy * uy + uz * uz
-    uv = ux * vx + uy * vy + uz * vz
-    vv = vx * vx + vy * vy + vz * vz
+    uu = dot(ab, ab)
+    uv = dot(ab, ac)
+    vv = dot(ac, ac)
     d3 = d1 - uu
     d4 = d2 - uv
     d5 = d1 - uv

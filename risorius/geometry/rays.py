@@ -11,6 +11,7 @@ from ..jit import njit
 from .arrays import Flags, Floats64, Integers32, Integers64
 from .directions import unit_vectors
 from .normals import cross_products
+from .vectors import Vector, cross, dot, less, row_of, times, vector_of
 
 PARALLEL_VOLUME = 1e-12  # below this a triangle counts as parallel to the line
 
@@ -73,35 +74,26 @@ def _have_common_vertex(one: Integers32, other: Integers32) -> bool:
 def _segment_cuts(start: Floats64, end: Floats64, triangle: Floats64) -> bool:
     """Whether a segment cuts a triangle (3, 3), as `crossings` finds it."""
     margin = 1e-6  # relative; contact at a corner or an edge is not a cut
-    dx = end[0] - start[0]
-    dy = end[1] - start[1]
-    dz = end[2] - start[2]
-    ax, ay, az = triangle[0]
-    bx = triangle[1, 0] - ax
-    by = triangle[1, 1] - ay
-    bz = triangle[1, 2] - az
-    cx = triangle[2, 0] - ax
-    cy = triangle[2, 1] - ay
-    cz = triangle[2, 2] - az
-    across_x = dy * cz - dz * cy
-    across_y = dz * cx - dx * cz
-    across_z = dx * cy - dy * cx
-    volume = bx * across_x + by * across_y + bz * across_z
+    first = vector_of(start)
+    u, v, along = _crossing(first, less(vector_of(end), 1.0, first), triangle)
+    is_in_triangle = u > margin and v > margin and u + v < 1.0 - margin
+    return bool(is_in_triangle and margin < along < 1.0 - margin)
+
+
+@njit
+def _crossing(origin: Vector, direction: Vector, triangle: Floats64) -> Vector:
+    """Return u, v and t of `crossings` for a line and a triangle (3, 3); -1, 0, 0 if parallel."""
+    a = row_of(triangle, 0)
+    ab = less(row_of(triangle, 1), 1.0, a)
+    ac = less(row_of(triangle, 2), 1.0, a)
+    across = cross(direction, ac)
+    volume = dot(ab, across)
     if not abs(volume) > PARALLEL_VOLUME:
-        return False
+        return -1.0, 0.0, 0.0
     inverse = 1.0 / volume
-    x = start[0] - ax
-    y = start[1] - ay
-    z = start[2] - az
-    u = (x * across_x + y * across_y + z * across_z) * inverse
-    if not margin < u < 1.0 - margin:
-        return False
-    turned_x = y * bz - z * by
-    turned_y = z * bx - x * bz
-    turned_z = x * by - y * bx
-    v = (turned_x * dx + turned_y * dy + turned_z * dz) * inverse
-    along = (cx * turned_x + cy * turned_y + cz * turned_z) * inverse
-    return bool(v > margin and u + v < 1.0 - margin and margin < along < 1.0 - margin)
+    from_a = less(origin, 1.0, a)
+    turned = cross(from_a, ab)
+    return times(inverse, (dot(from_a, across), dot(turned, direction), dot(ac, turned)))
 
 
 def exits(
@@ -153,30 +145,13 @@ def _meetings(
     met, distances: filled up to their size with ray and triangle (k, 2), and distance (k,).
     """
     found = 0
-    across = np.empty(3)
-    turned = np.empty(3)
+    origin = (0.0, 0.0, 0.0)
     for ray in range(len(directions)):
-        dx, dy, dz = directions[ray]
+        direction = row_of(directions, ray)
         for face in range(len(corners)):
-            way = middle[face]
-            if dx * way[0] + dy * way[1] + dz * way[2] < cone[face]:
+            if dot(direction, row_of(middle, face)) < cone[face]:
                 continue
-            a = corners[face, 0]
-            ab = corners[face, 1] - a
-            ac = corners[face, 2] - a
-            across[0] = dy * ac[2] - dz * ac[1]
-            across[1] = dz * ac[0] - dx * ac[2]
-            across[2] = dx * ac[1] - dy * ac[0]
-            volume = ab[0] * across[0] + ab[1] * across[1] + ab[2] * across[2]
-            if abs(volume) <= PARALLEL_VOLUME:
-                continue
-            inverse = 1.0 / volume
-            u = -(a[0] * across[0] + a[1] * across[1] + a[2] * across[2]) * inverse
-            turned[0] = a[2] * ab[1] - a[1] * ab[2]
-            turned[1] = a[0] * ab[2] - a[2] * ab[0]
-            turned[2] = a[1] * ab[0] - a[0] * ab[1]
-            v = (turned[0] * dx + turned[1] * dy + turned[2] * dz) * inverse
-            distance = (ac[0] * turned[0] + ac[1] * turned[1] + ac[2] * turned[2]) * inverse
+            u, v, distance = _crossing(origin, direction, corners[face])
             if u < 0.0 or v < 0.0 or u + v > 1.0 or distance <= 0.0:
                 continue
             if found < len(met):
