@@ -18,11 +18,12 @@ from ...geometry.arrays import Flags, Floats64, Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.normals import cross_products
 from ...geometry.polylines import arc_lengths
-from ...geometry.sides import sides_of
+from ...geometry.sides import different_pairs, sides_of
 from ..loading import load
 from ..meshes import Mesh
 from .face_place import placed
 from .mesh_validation import COVER_DEPTH, covering
+from .smooth_paths import smooth_path
 
 # Landmarks around each opening: the upper chain from corner to corner, then the lower chain back.
 OPENING_LANDMARKS = {
@@ -162,6 +163,9 @@ def _sheet(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers
     is_in_front = centroids[:, 2] > centre[2] - COVER_DEPTH
     is_near = np.linalg.norm(centroids - centre, axis=1) < 0.6 * opening.width
     near = np.flatnonzero((forward > 0.0) & is_in_front & is_near)
+    between = _between_paths(vertices, faces, near, opening, is_cover)
+    if _is_disc(faces[between]) and opening.is_covered_by(corners[between]):
+        return between
     for outline in opening.outlines(centre):
         inside = near[_is_inside(centroids[near, :2], outline)]
         found = _without_teeth(faces, inside)
@@ -169,6 +173,36 @@ def _sheet(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers
         if _is_disc(sheet):
             return found if opening.is_covered_by(vertices[sheet]) else none
     return none
+
+
+def _between_paths(
+    vertices: Floats64, faces: Integers32, near: Integers, opening: _Opening, is_cover: Flags
+) -> Integers:
+    """Find triangles between smooth paths along edges beside the lids; none if no path is there.
+
+    near: indices of the triangles near the eye, in front. is_cover: flags of the triangles before
+    the eye's centre, (F,).
+    """
+    none = np.zeros(0, np.int64)
+    steps = []
+    for curve in (opening.upper, opening.lower):
+        path = smooth_path(vertices, faces[near], curve)
+        if path is None:
+            return none
+        steps.append(np.column_stack([path[:-1], path[1:]]))
+    border = np.sort(np.concatenate(steps), axis=1)
+    sides = np.sort(sides_of(faces[near]), axis=1)
+    _, number = different_pairs(np.concatenate([border, sides]))
+    of_sides = number[len(border) :]
+    inner = np.flatnonzero(~np.isin(of_sides, number[: len(border)]))
+    owner = np.tile(np.arange(len(near)), 3)[inner]
+    # Triangles are connected through their sides, which are numbered after the triangles.
+    links = np.column_stack([owner, len(near) + of_sides[inner]])
+    part = pieces_of(links, len(near) + int(number.max()) + 1)[: len(near)]
+    covering_parts = part[is_cover[near]]
+    if not len(covering_parts):
+        return none
+    return np.asarray(near[part == np.bincount(covering_parts).argmax()])
 
 
 def _without_teeth(faces: Integers32, found: Integers) -> Integers:

@@ -14,12 +14,12 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import scipy
-from scipy.sparse import csgraph
 
 from ...geometry.arrays import Floats64, Integers, Integers32
-from ...geometry.mesh_graph import edge_graph, path_to, pieces_of
-from ...geometry.sides import edges_of, side_lengths, sides_of
+from ...geometry.mesh_graph import pieces_of
+from ...geometry.sides import sides_of
 from ..meshes import Mesh
+from .smooth_paths import distances_from, smooth_path
 
 UPPER_LIP_CHAIN = (60, 61, 62, 63, 64)
 LOWER_LIP_CHAIN = (60, 67, 66, 65, 64)
@@ -45,7 +45,7 @@ def lips_parted(mesh: Mesh, landmarks: Floats64) -> Mesh | None:
     most_gap = 0.01
     right_eye_corner, left_eye_corner = landmarks[[36, 45]]
     near = most_gap * float(np.linalg.norm(left_eye_corner - right_eye_corner))
-    from_line = _distances(mesh.vertices, line)
+    from_line = distances_from(mesh.vertices, line)
     mouth_corners = scipy.spatial.cKDTree(line[[0, -1]])
     from_corner, _ = mouth_corners.query(mesh.vertices)
     is_lip = (from_line < near) & (from_corner >= near)
@@ -123,7 +123,7 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     width = np.linalg.norm(line[-1] - line[0])
     if np.linalg.norm(gaps, axis=1).max() > most_gap * width:
         return None
-    path = _path_along(mesh, line)
+    path = smooth_path(mesh.vertices, mesh.faces, line)
     if path is None or len(path) < 5:  # with fewer edges, a mouth has no shape
         return None
     inner = path[1:-1]
@@ -160,24 +160,6 @@ def lip_cut(mesh: Mesh, indices: Integers32, landmarks: Floats64) -> LipCut | No
     return LipCut(sources, np.sort(corners[below], axis=1), indices, points)
 
 
-def _path_along(mesh: Mesh, line: Floats64) -> Integers | None:
-    """Find a path of edges along a line (n, 3): vertex indices; None if no path joins its ends."""
-    used = np.unique(mesh.faces)
-    _, nearest = scipy.spatial.cKDTree(mesh.vertices[used]).query(line[[0, -1]])
-    start, end = used[nearest]
-    edges = edges_of(mesh.faces)
-    lengths = side_lengths(mesh.vertices, edges)
-    middles = mesh.vertices[edges].mean(axis=1)
-    off = _distances(middles, line)
-    line_length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-    near = 0.01 * line_length  # an edge at this distance from the line counts as twice as long
-    weights = np.maximum(lengths, 1e-12) * (1.0 + (off / near) ** 2)
-    graph = edge_graph(edges, weights, len(mesh.vertices))
-    _, before = csgraph.dijkstra(graph, directed=False, indices=start, return_predecessors=True)
-    path = path_to(end, before)
-    return np.array(path) if path[0] == start else None
-
-
 def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
     """Return the triangles at a path's inner vertices, in a group for each side of the path."""
     strip = np.flatnonzero(np.isin(faces, path[1:-1]).any(axis=1))
@@ -194,11 +176,3 @@ def _sides_of_path(faces: Integers32, path: Integers) -> list[Integers]:
         first[side] = triangle
     part = pieces_of(np.array(links or [(0, 0)]), len(strip))
     return [strip[part == number] for number in range(part.max() + 1)]
-
-
-def _distances(points: Floats64, line: Floats64) -> Floats64:
-    """Return distances (n,) of points (n, 3) from a polyline (m, 3)."""
-    place_count = 33  # points on each segment of the line
-    steps = np.linspace(0.0, 1.0, place_count)[:, None, None]
-    samples = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
-    return np.asarray(scipy.spatial.cKDTree(samples).query(points)[0])
