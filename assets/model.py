@@ -92,8 +92,9 @@ class Part:
     - strand_radius: radius of the part's hairs [mm]; 0 for a part without hairs.
     - mandible_shares: for a part that stretches between both jaws, the weight of the mandible's
       motion at each vertex, 0 to 1, (n,), float32; None for other parts.
-    - striation: for hair, (n, 6), float32: coordinates across and along strands [mm], the vector
-      from root to tip [mm], and the density. For locks of hair, (n, 5): the unit vector along the
+    - striation: for hair, (n, 7), float32: coordinates across and along strands [mm], the vector
+      from root to tip [mm], the density, and the fray: 0 for hair that is combed smooth, to 1 for
+      strands that end one by one at outlines. For locks of hair, (n, 5): the unit vector along the
       lock, half its width [mm] with the side of the vertex as its sign, and the opacity. None for
       other parts.
     """

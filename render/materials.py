@@ -90,7 +90,7 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: P
     """
     kind = part.kind
     shine = part.shine
-    if kind in ("STRANDS", "LOCKS"):  # size of a pixel at distance 1
+    if kind in ("STRANDS", "LOCKS", "SHELLS"):  # size of a pixel at distance 1
         _, _, width, height = view.viewport
         program["pixel_size"] = 1.0 / view.camera.focal(width / height, height)
     if kind in ("SHELLS", "LOCKS"):

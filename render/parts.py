@@ -16,12 +16,12 @@ from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
 from .translucency import blending
 
-SHELL_ATTRIBUTES = "in_strand", "in_way", "in_dense"
+SHELL_ATTRIBUTES = "in_strand", "in_way", "in_dense", "in_fray"
 # Number of columns of a part's striation -> kind of part, layout and attributes of its vertices.
 STRIATION_LAYOUTS = {
     2: ("FIBRES", " 2f", "in_fibre"),
     5: ("LOCKS", " 3f 1f 1f", "in_along", "in_half", "in_opacity"),
-    6: ("SHELLS", " 2f 3f 1f", *SHELL_ATTRIBUTES),
+    7: ("SHELLS", " 2f 3f 1f 1f", *SHELL_ATTRIBUTES),
 }
 MOST_LAYERS = 9  # greatest number of shells; more take longer, fewer show gaps
 FEWEST_LAYERS = 2  # smallest number of shells

@@ -32,6 +32,7 @@ from .translucency import NO_CUT, SUNK_DEPTH, in_view
 
 _MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
 _LOWEST_PLACE = 0.15  # LOWEST of shell_layers.glsl
+_FRAYED_EDGE = 0.2  # FRAYED_EDGE of shell_layers.glsl
 
 
 class _Surface(NamedTuple):
@@ -140,8 +141,10 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     outline = placed.part.vertices + (place - _MEAN_PLACE) * striation[:, 2:5]
     positions = _multiplied(outline, model_view)[:, :3]
     normals = unit_vectors(placed.part.normals @ model_view[:3, :3])
-    facing = np.abs((normals * unit_vectors(positions)).sum(axis=1))
-    values = np.stack([striation[:, 5].astype(np.float64), facing], axis=1)
+    facing = -(normals * unit_vectors(positions)).sum(axis=1)
+    is_frayed = np.maximum(facing, 0.0) < _FRAYED_EDGE * striation[:, 6]
+    dense = np.where(is_frayed, 0.0, striation[:, 5])
+    values = np.stack([dense, np.abs(facing)], axis=1)
     clip = _multiplied(positions, view.projection)
     return _surface_of(placed, clip, values, HAIR_KIND)
 

@@ -51,6 +51,7 @@ def beard_of(
     # These values let locks grow in proportion to the density (locks.py).
     growing = 0.2 * dense / full - 0.04
     far = np.full_like(growing, FARTHEST)
+    striation = np.column_stack([far, far, way, growing, np.zeros_like(growing)])
     layers = Part(
         name=BEARD_NAME.removesuffix("_locks"),
         vertices=(points + MEAN_PLACE * way).astype(np.float32),
@@ -59,7 +60,7 @@ def beard_of(
         colours=np.broadcast_to(colours[0], points.shape).astype(np.float32),
         bone="cranium",
         shine=0.12,
-        striation=np.column_stack([far, far, way, growing]).astype(np.float32),
+        striation=striation.astype(np.float32),
     )
     hairs = locks_on(layers, replace(BEARD, count=round(BEARD.count * full)))
     count = len(hairs.vertices) // VERTEX_COUNT

@@ -27,6 +27,7 @@ from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 
 HAIR_NAME = "hair"  # the name of the part
 SLEEK_GLOSS = 0.4  # specular strength of hair that is combed smooth
+FRAYED_RISES = 0.5, 2.5  # [mm] of tips over roots, where outlines begin to fray, and fray fully
 LENGTHWISE_FACTOR = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
 
 
@@ -145,7 +146,11 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     first_depth = bare_depth if cut.knot else painted_depth
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (LENGTHWISE_FACTOR if cut.knot else 1.0) * radius * away
-    striation = np.column_stack([radius * angle, along, way, dense])
+    rise = (way * normals).sum(axis=1)
+    fray = smooth_step(*FRAYED_RISES, rise) * smooth_step(0.5 * cut.behind, cut.behind, behind)
+    if cut.knot:
+        fray[:] = 0.0
+    striation = np.column_stack([radius * angle, along, way, dense, fray])
     # Cropped hair shines little: its tips point outward, so no bright ring surrounds the whorl.
     short_shine = 0.12 * min(cut.top / 20.0, 1.0) ** 2
     hair = Part(
@@ -161,7 +166,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # Locks at the front are at least this long; longer cuts are combed over the forehead.
     least = min(2.0 + 0.15 * length * cut.top, 5.5)
     growth = TIED_HAIR if cut.knot else replace(SHORT_HAIR, least=least)
-    height = off + MEAN_PLACE * (way * normals).sum(axis=1)
+    height = off + MEAN_PLACE * rise
     hangs = _hangs(cut, points - middle, normals, behind, height)
     inside = from_within(_with_dense_hem(hair), faces[hangs[faces].all(axis=1)])
     return inside, hair, locks_on(hair, growth)
@@ -213,6 +218,8 @@ def _with_dense_hem(hair: Part) -> Part:
     assert hair.striation is not None
     striation = hair.striation.copy()
     striation[:, 5] = np.minimum(3.0 * striation[:, 5] + 0.8, 2.0)
+    striation[striation[:, 6] > 0.0, 5] = 0.0  # else the inner side fills outlines that fray
+    striation[:, 6] = 0.0
     return replace(hair, striation=striation)
 
 

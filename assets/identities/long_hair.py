@@ -317,7 +317,7 @@ def _layered_part(
         colours=np.broadcast_to(colour, shape).reshape(-1, 3).astype(np.float32),
         bone="cranium",
         shine=short.SLEEK_GLOSS,
-        striation=np.hstack([across, along, way, dense]).astype(np.float32),
+        striation=np.hstack([across, along, way, dense, np.zeros_like(dense)]).astype(np.float32),
     )
 
 

@@ -3,7 +3,7 @@
 
 #if defined(SHELLS)
 #include "shell_layers.glsl"
-#define VARYINGS float dense; float facing;
+#define VARYINGS float dense; float facing; float fray;
 #else
 #define VARYINGS float from_cut; float rise;
 #endif
@@ -15,6 +15,7 @@ in vec3 in_normal;
 #if defined(SHELLS)
 in vec3 in_way;
 in float in_dense;
+in float in_fray;
 uniform int layers;
 #endif
 uniform mat4 model_view;
@@ -32,7 +33,8 @@ void main() {
 #if defined(SHELLS)
     position.xyz += (outline_place(layers) - MEAN) * (mat3(model_view) * in_way);
     surface.dense = in_dense;
-    surface.facing = abs(dot(normalize(mat3(model_view) * in_normal), normalize(position.xyz)));
+    surface.facing = -dot(normalize(mat3(model_view) * in_normal), normalize(position.xyz));
+    surface.fray = in_fray;
 #else
     surface.rise = 0.0;
     surface.from_cut = 0.0;
@@ -57,7 +59,7 @@ out float sample_number;
 
 void main() {
 #if defined(SHELLS)
-    if (!has_edge(surface.dense, surface.facing)) discard;
+    if (!has_edge(surface.dense, surface.facing, surface.fray)) discard;
 #elif defined(TRANSLUCENT)
     if (!gl_FrontFacing && surface.from_cut < 0.0) discard;
 #endif

@@ -3,6 +3,7 @@
 
 const float MEAN = 0.6;     // height of the vertices, as a fraction of the longest strands
 const float LOWEST = 0.15;  // height of the first layer, in distances of layers: no gap is below it
+const float FRAYED_EDGE = 0.2;   // facing below which frayed outlines have no edge
 const float LEAST_FACING = 0.05;  // facing from which on a layer hides all behind it
 
 float layer_place(float number, int layers) {
@@ -26,7 +27,8 @@ bool is_hair(float dense, float facing) {
 }
 
 // Whether the edge of hair is smoothed here. The hem is not: it fades out, and each layer ends at
-// another place there. sample_kernels.py has the same number.
-bool has_edge(float dense, float facing) {
-    return dense >= 0.9 * seen_share(facing);
+// another place there. Nor are outlines that fray. facing: negative on the inner side of hair.
+// sample_kernels.py and software_mixer.py have the same numbers.
+bool has_edge(float dense, float facing, float fray) {
+    return dense >= 0.9 * seen_share(abs(facing)) && max(facing, 0.0) >= FRAYED_EDGE * fray;
 }

@@ -5,7 +5,7 @@
 #include "hair_light.glsl"
 #include "shell_layers.glsl"
 
-#define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float facing;
+#define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float fray; float facing; float pixel;
 
 uniform int layers;         // number of all layers
 
@@ -17,9 +17,11 @@ in vec3 in_colour;
 in vec2 in_strand;  // across and along strands [mm]
 in vec3 in_way;     // vector from the root to the tip of the longest strand
 in float in_dense;  // density, 0 to 1; above 1, uneven strands are whole, too
+in float in_fray;   // 0 where outlines are smooth, to 1
 uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
+uniform float pixel_size;  // size of a pixel at distance 1
 uniform int first;  // number of the first layer to draw; layers count from the inside out
 out Surface { VARYINGS } surface;
 
@@ -36,8 +38,9 @@ void main() {
     surface.cosine = light.cosine;
     surface.colour = in_colour;
     surface.strand = in_strand;
-    surface.layer = layer, surface.dense = in_dense;
-    surface.facing = abs(dot(normal, normalize(position.xyz)));
+    surface.layer = layer, surface.dense = in_dense, surface.fray = in_fray;
+    surface.facing = -dot(normal, normalize(position.xyz));
+    surface.pixel = -pixel_size * position.z;
     gl_Position = projection * position;
 }
 
@@ -55,6 +58,9 @@ const float UNEVEN = 0.45;               // random shift of highlights by strand
 const vec2 SIDEWAYS = vec2(0.6, 0.85);   // facing at which single strands begin to show, and show fully
 const vec2 RAGGED = vec2(0.4, 0.08);     // random change of density by strand and lock, for uneven hems
 const vec2 CRISP = vec2(1.1, 1.6);       // steepness of hems where locks show, and where strands show
+const float FRAYED = 2.4;                // [mm] from the outline over which strands end
+const vec2 UNEVENLY = vec2(2.0, 1.5);    // [mm] random change of this distance by strand and lock
+const float FRAYED_PIXELS = 3.0;         // least number of pixels of this distance
 const float DARK = 0.45;                 // fraction of light at roots
 const float COVERED = 0.7;               // number of layers above a layer that take no light from it
 const float SOFT = 0.22;                 // fraction of a strand's length over which its tip fades
@@ -74,10 +80,11 @@ vec2 reach(vec2 number) {
 }
 
 void main() {
+    float facing = abs(surface.facing);
     // Strands and locks finer than a pixel fade into their mean.
     vec2 share = clamp(1.5 - 1.25 * fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     // Seen from the side, single tips would look like dashed lines.
-    float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
+    float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, facing);
     float outline = outline_place(layers) + SHARP;
     if (single == 0.0 && surface.layer > outline + SHARP) discard;  // early, to save time
     // Strands of one lock lean alike, and cross those of the next. Heights vary smoothly between them.
@@ -86,7 +93,7 @@ void main() {
     vec2 at = vec2(surface.strand.x + lean, surface.strand.x) / vec2(THIN, THICK);
     vec2 number = floor(at), place = at - number;
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    float seen = seen_share(surface.facing);
+    float seen = seen_share(facing);
     vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // less at hems, else they have teeth
     float tall = mix(outline, 0.65 + dot(apart, tones), single);
     // Toward hems strands are fewer and shorter; where they are finer than a pixel, hair turns clear.
@@ -96,6 +103,14 @@ void main() {
     there *= clamp(4.0 * (surface.dense + dot(RAGGED, tones)), 0.0, 1.0);
     float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
+    // Strands end one by one before the outline of all layers but the lowest.
+    float slope = length(vec2(dFdx(surface.facing), dFdy(surface.facing)));
+    if (surface.layer > layer_place(0.5, layers) && surface.fray > 0.0 && facing < SIDEWAYS.x) {
+        // At least some pixels wide, else the outline has steps.
+        float frayed = surface.fray * max(FRAYED + dot(UNEVENLY, tones), FRAYED_PIXELS * surface.pixel);
+        float inside = max(surface.facing, 0.0) * surface.pixel / max(slope, 1e-6);
+        cover *= clamp((inside + 0.01) / (frayed + 0.01), 0.0, 1.0);
+    }
     if (cover < 0.08) discard;
     float uneven = 0.6 * (tones.x + tones.y);
     // Layers above absorb light; their number is the height of the strand above this layer.
@@ -104,7 +119,7 @@ void main() {
     vec3 front = surface.colour * (1.0 + 1.0 * uneven) * open;
     vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * highlights(surface.cosine, UNEVEN * uneven, front);
     // Hair of several layers has no single depth, so the depth is 0.
-    pixel_surface = has_edge(surface.dense, surface.facing) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
+    pixel_surface = has_edge(surface.dense, surface.facing, surface.fray) ? vec4(surface_number(0.0), 0.0, 0.0, 1.0) : vec4(0.0);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);
 }
 

@@ -53,7 +53,7 @@ def test_hair_is_a_sound_part(cut):
     ]:
         check_part(part, least_agreeing=0.9)  # at the hairline the lower side of hair turns over
         assert part.bone == "cranium"
-        assert part.striation.shape == (len(part.vertices), 6)
+        assert part.striation.shape == (len(part.vertices), 7)
         assert np.isfinite(part.striation).all()
 
 
@@ -178,7 +178,7 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin():
 
 def is_layered(part):
     """Whether a part is drawn as layers of hair."""
-    return part.striation is not None and part.striation.shape[1] == 6
+    return part.striation is not None and part.striation.shape[1] == 7
 
 
 def label_of(person):
@@ -197,7 +197,7 @@ def test_sparse_hair_has_the_class_behind_it():
     Elsewhere, as at sparse tips, it has the class behind the hair.
     """
     long = haired("parted")
-    few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
+    few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2, 1.0])
     parts = [
         replace(each, striation=each.striation * few) if is_layered(each) else each
         for each in long.parts

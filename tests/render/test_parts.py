@@ -134,7 +134,7 @@ def test_hair_is_dense_up_to_its_outline(renderer):
     covers = []
     for dense in (1.0, 0.0):
         out = ball.normals
-        striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, 0]])
+        striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, :2]])
         striation[:, 5] = dense
         hair = reshaped(ball, vertices=ball.vertices + 6.0 * out, striation=striation)
         row = 255 - draw(renderer, parts=still(hair))[48].mean(axis=1)
@@ -146,12 +146,35 @@ def test_hair_is_dense_up_to_its_outline(renderer):
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 
+def test_outlines_of_hair_fray_and_leave_no_dotted_ring(renderer):
+    """Where hair frays, its cover falls toward the outline, and no dotted ring remains there."""
+    ball = Ball(colour=(0.1, 0.1, 0.1))
+    rows, columns = np.mgrid[:96, :96] - 47.5
+    radius = np.hypot(rows, columns).astype(int)
+    rings = []
+    for fray in (0.0, 1.0):
+        fixed = np.tile([1.0, fray], (len(ball.normals), 1))
+        columns = 0.3 * ball.vertices[:, :2], 10.0 * ball.normals, fixed
+        hair = reshaped(
+            ball,
+            vertices=ball.vertices + 6.0 * ball.normals,
+            striation=np.column_stack(columns),
+        )
+        dark = 255.0 - draw(renderer, parts=still(hair)).mean(axis=2)
+        rings.append([dark[radius == k].mean() for k in range(40)])
+    smooth, frayed = np.array(rings)
+    edge = int(np.argmax(smooth < 100.0))  # pixels of 0.86 mm
+    assert np.abs(frayed - smooth)[: edge - 4].max() < 8.0
+    assert (frayed <= smooth + 8.0).all()
+    assert 0.3 < (smooth - frayed).sum() / smooth[0] < 1.5  # pixels
+
+
 def test_hair_hides_the_skin_behind_it(renderer):
     """Hair hides the outline of skin behind it."""
     wall = lent(renderer, square(z=-5.0))
     ball = Ball(colour=(0.1, 0.1, 0.1))
-    striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
-    striation[:, 5] = 1.0
+    fixed = np.tile([1.0, 0.0], (len(ball.vertices), 1))
+    striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, fixed])
     hair = reshaped(ball, striation=striation)
     frame = draw(renderer, wall, parts=still(hair))
     assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()
@@ -170,7 +193,7 @@ def test_hair_shines_where_it_lies_and_not_by_how_far_it_stands_off(renderer):
     for lean in (0.2, 0.6, 9.0):
         way = 2.0 * (lean * out + down) / max(lean, 1.0)
         columns = ball.vertices[:, :1], 0.0 * out[:, :1], way
-        striation = np.column_stack([*columns, np.full(len(out), 2.0)])
+        striation = np.column_stack([*columns, np.full(len(out), 2.0), np.zeros(len(out))])
         image = draw(renderer, parts=still(reshaped(ball, striation=striation)))
         light = image[34:60, 38:58].mean(axis=(1, 2))
         rows.append(int(np.argmax(light)))
@@ -188,7 +211,7 @@ def test_a_hem_of_hair_throws_no_shadow(renderer):
         columns = [
             ball.vertices[:, :2],
             4.0 * ball.normals,
-            np.full((len(ball.vertices), 1), dense),
+            np.tile([dense, 0.0], (len(ball.vertices), 1)),
         ]
         hair = reshaped(ball, striation=np.hstack(columns))
         placed = [render.PlacedPart.on_bone(hair, STILL_TRANSFORMS, throws_shadow=True)]

@@ -134,7 +134,8 @@ class HairyBall(Ball):
 
     @property
     def striation(self):
-        """Across and along [mm], direction from root to tip, share of the way, shape (n, 6)."""
+        """Across and along [mm], direction from root to tip, density and fray, shape (n, 7)."""
         normals = self.normals.astype(np.float64)
         way = 0.5 * normals - [0.0, 1.0, 0.0] + normals[:, 1:2] * normals
-        return np.hstack([self.vertices[:, :2], way, np.ones((len(way), 1))]).astype(np.float32)
+        fixed = np.tile([1.0, 0.0], (len(way), 1))
+        return np.hstack([self.vertices[:, :2], way, fixed]).astype(np.float32)
