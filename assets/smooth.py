@@ -1,4 +1,4 @@
-"""Small functions of arrays: a smooth step, rows of length 1, means of blocks."""
+"""Small functions of arrays: a smooth step, a bump, means of blocks."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,11 @@ def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
     """Rise from 0 at `low` to 1 at `high`, with slope 0 at both ends."""
     t = np.clip((values - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
+
+
+def bump(values: Floats64, centre: float, width: float) -> Floats64:
+    """Rise to 1 at `centre`, and fall to 0.37 at a distance of `width` (a Gaussian)."""
+    return np.asarray(np.exp(-(((values - centre) / width) ** 2)))
 
 
 def shrunk(values: Floats32, shrink: int) -> Floats32:

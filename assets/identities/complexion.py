@@ -120,9 +120,9 @@ def recoloured(
         )
     tints = _tints_of_size() if shrink == 1 else _shrunk_tints(shrink)
     density, redness, _ = changes_of(tints.melanin_of(angle), blood)
+    light = tints.skin[:3] * np.exp(-_absorbance(tints.skin, density, redness))
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey_share = 0.12  # factor on greyness of brows and lashes, which turn grey later
-    skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features, shrink)
     if behind is None and haired_as is not None:
         behind = _distances_behind_hairline(tints, features)
@@ -140,7 +140,7 @@ def recoloured(
     )
     grey = features.grey * np.array([1.0, grey_share], single)
     shown = Hairs(hair.astype(single), grey, GREY_LIGHT, kept, tints.scalp, tints.beard)
-    bare = skin.astype(single)
+    bare = light.astype(single)
     covered = kept[:0] if behind is None else grown_over(behind)
     grown = Grown(covered, hairs, MOST_COVER, np.float32(root_light))
     picture = np.empty((*kept.shape, 3), np.uint8)
@@ -150,6 +150,11 @@ def recoloured(
         np.exp(left, out=left)
         compose(left, first, tints.light, bare, tints.hair, shown, grown, _screen_bytes(), picture)
     return picture
+
+
+def _absorbance(skin: Floats64, density: Floats64, redness: Floats64) -> Floats64:
+    """Return the absorbance (3,) of added melanin and blood, (3,) each; skin: as in `_Tints`."""
+    return np.asarray(skin[3] * density + skin[4] * redness)
 
 
 def _hair_light(angle: float, features: Features) -> Floats64:
@@ -166,9 +171,10 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
         brows = painted(features.brows, shrink * len(kept))
         rows = np.flatnonzero(brows.any(axis=1)) // shrink
-        near = slice(rows[0], rows[-1] + 1)
-        brows = brows[shrink * near.start : shrink * near.stop]
-        kept[near] = np.maximum(kept[near], shrunk(brows, shrink))
+        first = rows[0]
+        end = rows[-1] + 1
+        brows = shrunk(brows[shrink * first : shrink * end], shrink)
+        kept[first:end] = np.maximum(kept[first:end], brows)
     if features.lid_line > 0.0:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
@@ -250,10 +256,10 @@ def _beside_light_skin(angle: float) -> Floats64:
     """Light from skin of a tone, relative to light skin: (3,), at most 1; angle: ITA [deg]."""
     tints = _tints_of_size()
     light_skin = 41.0  # ITA from which skin is called light
-    lost = np.zeros((2, 3))
-    for row, tone in enumerate((min(angle, light_skin), light_skin)):
+    lost = []
+    for tone in (min(angle, light_skin), light_skin):
         density, redness, _ = changes_of(tints.melanin_of(tone), 1.0)
-        lost[row] = tints.skin[3] * density + tints.skin[4] * redness
+        lost.append(_absorbance(tints.skin, density, redness))
     return np.asarray(np.exp(lost[1] - lost[0]))
 
 
@@ -335,13 +341,14 @@ def _tints_of_size() -> _Tints:
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
     hair_colour = to_linear(SHIPPED_COMPLEXION.hair).astype(np.float32)
     bare = np.maximum(light - hair[..., None] * hair_colour, 0.0)
-    skin = arrays["skin"][:3]
-    weights = arrays["skin"][3:]
+    skin = arrays["skin"]
     least_melanin = 0.05
     most_melanin = 3.4
     melanins = np.linspace(most_melanin, least_melanin, 200)
-    changes = [changes_of(float(melanin), 1.0) for melanin in melanins]
-    tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
+    tones = []
+    for melanin in melanins.tolist():
+        density, redness, _ = changes_of(melanin, 1.0)
+        tones.append(skin[:3] * np.exp(-_absorbance(skin, density, redness)))
     is_skin = (hair < 0.02).astype(np.float32)
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3)) * is_skin
     detail_size = 9  # [texels]; finer changes of lightness count as relief
@@ -356,7 +363,7 @@ def _tints_of_size() -> _Tints:
         hair=hair,
         lids=np.asarray(read_image(head.file_beside("_lids.png"), mode="L") / 255.0, np.float32),
         detail=detail,
-        skin=arrays["skin"],
+        skin=skin,
         melanins=melanins,
         angles=typology_angle(tones),
     )

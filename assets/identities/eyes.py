@@ -77,11 +77,14 @@ def with_irises(
     if name not in IRIS_FREQUENCIES:
         raise ValueError(f"eye colour was {name!r}, allowed are {', '.join(IRIS_FREQUENCIES)}")
     painted = read_arrays(load("head").file_beside("_eyes.npz"))[name] / np.float32(255.0)
-    found = {}
-    for eye, colours in zip(eyes, painted, strict=True):
-        part = _eyeball(parts, eye)
-        found[part.name] = replace(part, colours=_varied_iris(part, eye, colours, iris))
-    return tuple(found.get(part.name, part) for part in parts)
+    eyeballs = {f"eyeball_{eye.name}": (eye, own) for eye, own in zip(eyes, painted, strict=True)}
+    found = []
+    for part in parts:
+        if part.name in eyeballs:
+            eye, colours = eyeballs[part.name]
+            part = replace(part, colours=_varied_iris(part, eye, colours, iris))
+        found.append(part)
+    return tuple(found)
 
 
 def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) -> tuple[Part, ...]:
@@ -89,26 +92,24 @@ def beside_skin(parts: Sequence[Part], eyes: Sequence[Eye], darker: Floats64) ->
 
     darker: light from the skin relative to light skin, at most 1, (3,).
     """
-    # Exponents of `darker` for the flesh at the inner corner, the wet edges of the lids, the white.
-    exponents = {"eye_corners": np.full(3, 0.85), "wet_edges": np.full(3, 0.85)}
-    white_factor = np.array([0.15, 0.19, 0.25])
+    # Exponents of `darker`.
+    of_flesh = 0.85
+    of_white = np.array([0.15, 0.19, 0.25])
     if (darker == 1.0).all():
         return tuple(parts)
-    found = {}
+    eyeballs = {f"eyeball_{eye.name}": eye for eye in eyes}
+    found = []
     for part in parts:
-        if part.name in exponents:
-            found[part.name] = _times_light(part.colours, darker ** exponents[part.name])
-    for eye in eyes:
-        part = _eyeball(parts, eye)
-        is_white = (_axis_distances(part, eye) > 1.05)[:, None]
-        found[part.name] = _times_light(part.colours, np.where(is_white, darker**white_factor, 1.0))
-    return tuple(
-        replace(part, colours=found[part.name]) if part.name in found else part for part in parts
-    )
-
-
-def _eyeball(parts: Sequence[Part], eye: Eye) -> Part:
-    return next(part for part in parts if part.name == f"eyeball_{eye.name}")
+        light = None
+        if part.name in ("eye_corners", "wet_edges"):
+            light = darker**of_flesh
+        elif part.name in eyeballs:
+            is_white = _axis_distances(part, eyeballs[part.name]) > 1.05
+            light = np.where(is_white[:, None], darker**of_white, 1.0)
+        if light is not None:
+            part = replace(part, colours=_times_light(part.colours, light))
+        found.append(part)
+    return tuple(found)
 
 
 def _axis_distances(part: Part, eye: Eye) -> Floats64:
@@ -130,7 +131,8 @@ def _varied_iris(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats3
     edge_radii = 0.78, 0.96  # in radii of the iris: the dark edge begins, and is darkest
     lighter = iris.lightness - iris.limbus * smooth_step(*edge_radii, aside)
     lighter += iris.fibres * _fibres(part, eye, aside, iris.seed)
-    varied *= 2.0 ** lighter[:, None] * (1.0 + ring[:, None] * (brown - 1.0))
+    tint = 1.0 + ring[:, None] * (brown - 1.0)
+    varied *= 2.0 ** lighter[:, None] * tint
     is_iris = (aside < 1.0)[:, None]
     iris_colours = np.clip(to_screen(varied), 0.0, 1.0)
     return np.asarray(np.where(is_iris, iris_colours, colours), np.float32)

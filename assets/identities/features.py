@@ -74,8 +74,11 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         hairline = replace(hairline, tied=TIED_AHEAD)
     iris = drawn_iris(years, fibres, random, angle=angle)
     blood_chance, pale_chance = np.clip(random.normal(size=2), -2.0, 2.0).tolist()
-    fading = 1.0 - 0.006 * (years - 20.0)
-    blood = -0.05 + 0.13 * blood_chance if is_man else fading * (0.48 + 0.2 * blood_chance)
+    if is_man:
+        blood = -0.05 + 0.13 * blood_chance
+    else:
+        fading = 1.0 - 0.006 * (years - 20.0)
+        blood = fading * (0.48 + 0.2 * blood_chance)
     pale = 0.12 + 0.15 * pale_chance
     return Features(
         brows=brows,

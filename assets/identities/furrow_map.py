@@ -18,7 +18,7 @@ from ...geometry.carving import carve
 from ..data_files import Image
 from ..loading import load
 from ..model import Wrinkles
-from ..smooth import shrunk, smooth_step
+from ..smooth import bump, shrunk, smooth_step
 from .furrows import (
     FEET_REACH,
     FOREHEAD_REACH,
@@ -103,12 +103,11 @@ def _bytes_of(region: _Region, drawn: Sequence[FurrowLine], per_slope: float) ->
 
     per_slope: 1 / greatest difference in height between neighbouring texels [1/mm].
     """
-    courses, depths = (
-        np.array([getattr(line, name) for line in drawn], dtype=np.float32)
-        for name in ("course", "depth")
-    )
+    courses = np.array([line.course for line in drawn], dtype=np.float32)
+    depths = np.array([line.depth for line in drawn], dtype=np.float32)
     forms = np.array([(line.width, line.roll, line.swelling) for line in drawn], dtype=np.float32)
-    height, depth = (np.zeros(region.texels.shape[:2], np.float32) for _ in range(2))
+    height = np.zeros(region.texels.shape[:2], np.float32)
+    depth = np.zeros_like(height)
     carve(region.texels, courses, depths, forms, height, depth)
     down, right = np.gradient(height)
     found = np.stack([right, -down, depth], axis=2)
@@ -134,80 +133,123 @@ def shared_map(shrink: int) -> Image:
 @lru_cache(maxsize=2)
 def _line_regions(shrink: int) -> _Places:
     """Find the regions of lines; all lengths are chosen by eye, except the brows' position."""
-    head = load("head")
     plain = shared_map(shrink).copy()
-    size = len(plain)
-    rows, columns, place = _face_texels(size)
+    rows, columns, place = _face_texels(len(plain))
     near = plain[rows, columns].astype(np.float32)
-    x, y, z = np.moveaxis(place, 2, 0)
-    beside = np.abs(x)
-    brow = 26.5 + 2.0 * _bump(beside, 32.0, 14.0) - 3.0 * smooth_step(42.0, 54.0, beside)
-    above = smooth_step(0.0, 7.0, y - brow) * smooth_step(74.0, 60.0, y)
-    above *= smooth_step(58.0, 36.0, beside) * smooth_step(40.0, 60.0, z)
-    above *= 1.0 - smooth_step(41.0, 36.0, y) * smooth_step(19.0, 12.0, beside)
-    between = (
-        smooth_step(9.0, 15.0, y) * smooth_step(36.0, 26.0, y) * smooth_step(15.0, 9.0, beside)
-    )
-    leaning = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
-    away = np.stack([beside, y, z], axis=2) - FAN_HUB
-    level = np.hypot(away[..., 0], away[..., 2]) * np.sign(away[..., 0])
-    up = away[..., 1] + 0.1 * level  # a fan sinks a little outward
-    radius = np.hypot(level, up)
-    angle = np.arctan2(up, level)
-    fan = smooth_step(10.5, 13.0, radius) * smooth_step(36.0, 30.0, radius)
-    fan *= smooth_step(-1.25, -0.85, angle) * smooth_step(0.75, 0.5, angle)
-    fan *= smooth_step(1.2, 2.4, np.hypot(beside - 42.9, y + 0.2))
-    ring = head.vertices[head.rings["nasolabial_fold_left"]]
-    outside = beside - np.interp(-y, -ring[:, 1], ring[:, 0])
-    fold = smooth_step(-9.0, -6.0, outside) * smooth_step(24.0, 18.0, outside)
-    fold *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
-    # Remove the lines of the built-in head, except those of the lower lid in the second slot.
-    first = 1.0 - near[..., 3] / 255.0
-    is_above = (y > 9.5 + 11.0 * smooth_step(14.0, 20.0, beside)) & (y < FAR_AWAY)
-    taken = is_above.astype(np.float64)
-    taken += first * (radius > 8.0) * (radius < 42.0) * (angle > -1.4) * (level > 0.0)
-    kept = np.maximum(1.0 - taken, 0.0)[..., None]
-    near[..., :3] = FLAT_TEXEL + kept * (near[..., :3] - FLAT_TEXEL)
+    x, y, _ = np.moveaxis(place, 2, 0)
+    forehead, glabella = _brow_covers(place)
+    fan = _fan_around_eyes(place)
+    _remove_built_in_lines(near, place, fan)
     # Lines of the forehead follow its first slot, also where the built-in head has frown lines.
-    is_lined = between + above > 1e-3
-    share_between = between / np.maximum(between + above, 1e-9)
-    near[is_lined, 3] = 255.0 * share_between[is_lined]
+    lined = glabella + forehead
+    is_lined = lined > 1e-3
+    share_of_glabella = glabella / np.maximum(lined, 1e-9)
+    near[is_lined, 3] = 255.0 * share_of_glabella[is_lined]
     plain[rows, columns] = np.rint(near)
-    x_sample = _sample_of(FOREHEAD_REACH, x)
-    radii = _sample_of(FEET_REACH, radius)
-    one = np.ones_like(x)
     corner = rows.start, columns.start
+    fold = _fold_cover(place)
     feet = []
     folds = []
     for side in (1, -1):
         is_on_side = side * x > 0.0
-        feet.append(_region(corner, fan * is_on_side, angle, radii, radius))
+        samples = _sample_of(FEET_REACH, fan.radius)
+        feet.append(_region(corner, fan.cover * is_on_side, fan.angle, samples, fan.radius))
         folds.append(_fold(corner, fold * is_on_side, near))
+    leaning = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
+    one = np.ones_like(x)
     return _Places(
         plain,
-        _region(corner, above, leaning, x_sample, one),
-        _region(corner, between, x, _sample_of(GLABELLA_REACH, y), one),
+        _region(corner, forehead, leaning, _sample_of(FOREHEAD_REACH, x), one),
+        _region(corner, glabella, x, _sample_of(GLABELLA_REACH, y), one),
         tuple(feet),
         tuple(folds),
     )
+
+
+def _brow_covers(place: Floats64) -> tuple[Floats64, Floats64]:
+    """Return the cover of lines above the brows, and between them, (h, w) each.
+
+    place: points of the face [mm], (h, w, 3), as for the next functions.
+    """
+    x, y, z = np.moveaxis(place, 2, 0)
+    beside = np.abs(x)
+    brow = 26.5 + 2.0 * bump(beside, 32.0, 14.0) - 3.0 * smooth_step(42.0, 54.0, beside)
+    above = smooth_step(0.0, 7.0, y - brow) * smooth_step(74.0, 60.0, y)
+    above *= smooth_step(58.0, 36.0, beside) * smooth_step(40.0, 60.0, z)
+    above *= 1.0 - smooth_step(41.0, 36.0, y) * smooth_step(19.0, 12.0, beside)
+    between = smooth_step(9.0, 15.0, y) * smooth_step(36.0, 26.0, y)
+    between *= smooth_step(15.0, 9.0, beside)
+    return above, between
+
+
+class _Fan(NamedTuple):
+    """The places of crow's feet, in coordinates around a hub in the orbit, (h, w) each.
+
+    cover: strength, 0 to 1. angle: above the horizontal [rad]. radius, level: distance from the
+    hub, and its level part, negative toward the nose [mm].
+    """
+
+    cover: Floats64
+    angle: Floats64
+    radius: Floats64
+    level: Floats64
+
+
+def _fan_around_eyes(place: Floats64) -> _Fan:
+    """Find the fans beside both eyes."""
+    x, y, z = np.moveaxis(place, 2, 0)
+    beside = np.abs(x)
+    outward, upward, forward = np.moveaxis(np.stack([beside, y, z], axis=2) - FAN_HUB, 2, 0)
+    level = np.hypot(outward, forward) * np.sign(outward)
+    up = upward + 0.1 * level  # a fan sinks a little outward
+    radius = np.hypot(level, up)
+    angle = np.arctan2(up, level)
+    cover = smooth_step(10.5, 13.0, radius) * smooth_step(36.0, 30.0, radius)
+    cover *= smooth_step(-1.25, -0.85, angle) * smooth_step(0.75, 0.5, angle)
+    from_corner = np.hypot(beside - 42.9, y + 0.2)  # [mm] from the outer corner of the lids
+    cover *= smooth_step(1.2, 2.4, from_corner)
+    return _Fan(cover, angle, radius, level)
+
+
+def _fold_cover(place: Floats64) -> Floats64:
+    """Return the cover of the folds beside the mouth, (h, w)."""
+    x, y, _ = np.moveaxis(place, 2, 0)
+    head = load("head")
+    ring = head.vertices[head.rings["nasolabial_fold_left"]]
+    outside = np.abs(x) - np.interp(-y, -ring[:, 1], ring[:, 0])
+    cover = smooth_step(-9.0, -6.0, outside) * smooth_step(24.0, 18.0, outside)
+    cover *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
+    return cover
+
+
+def _remove_built_in_lines(near: Floats32, place: Floats64, fan: _Fan) -> None:
+    """Flatten lines of the built-in head, except those of the lower lid in the second slot.
+
+    near: bytes of the map, (h, w, 4), changed in place.
+    """
+    x, y, _ = np.moveaxis(place, 2, 0)
+    lowest = 9.5 + 11.0 * smooth_step(14.0, 20.0, np.abs(x))
+    is_above = (y > lowest) & (y < FAR_AWAY)
+    is_in_fan = (fan.radius > 8.0) & (fan.radius < 42.0) & (fan.angle > -1.4) & (fan.level > 0.0)
+    in_first_slot = 1.0 - near[..., 3] / 255.0
+    taken = is_above.astype(np.float64) + in_first_slot * is_in_fan
+    kept = np.maximum(1.0 - taken, 0.0)[..., None]
+    near[..., :3] = FLAT_TEXEL + kept * (near[..., :3] - FLAT_TEXEL)
 
 
 def _face_texels(size: int) -> tuple[slice, slice, Floats64]:
     """Find the rows and columns of the map that hold the face, and points [mm], (h, w, 3)."""
     head = load("head")
     x, y, z = np.moveaxis(head.vertices[head.faces], 2, 0)
-    is_face = ((z > 30.0) & (np.abs(x) < 75.0) & (y > -100.0) & (y < 85.0)).all(axis=1)
-    texels = texels_of(is_face, size)
+    is_high_enough = (y > -100.0) & (y < 85.0)
+    is_in_face = is_high_enough & (z > 30.0) & (np.abs(x) < 75.0)  # (F, 3), of the corners
+    texels = texels_of(is_in_face.all(axis=1), size)
     rows = slice(int(texels.rows.min()), int(texels.rows.max()) + 1)
     columns = slice(int(texels.columns.min()), int(texels.columns.max()) + 1)
     place = np.full((rows.stop - rows.start, columns.stop - columns.start, 3), FAR_AWAY)
     at = texels.rows - rows.start, texels.columns - columns.start
     place[at] = texels.interpolate(head.vertices[head.faces])
     return rows, columns, place
-
-
-def _bump(values: Floats64, centre: float, wide: float) -> Floats64:
-    return np.asarray(np.exp(-(((values - centre) / wide) ** 2)))
 
 
 def _fold(corner: tuple[int, int], cover: Floats64, near: Floats32) -> _Fold:
@@ -229,11 +271,14 @@ def _region(corner: tuple[int, int], cover: Floats64, *places: Floats64) -> _Reg
     corner: row and column of the map where all arrays begin. cover: strength of lines, (h, w).
     places: coordinate across the lines, coordinate along them, and scale, each (h, w).
     """
-    spans = [np.flatnonzero((cover > 0.0).any(axis=axis)) for axis in (1, 0)]
-    rows, columns = (slice(int(span[0]), int(span[-1]) + 1) for span in spans)
-    texels = np.stack([each[rows, columns] for each in (*places, cover)], axis=2)
+    covered_rows, covered_columns = np.nonzero(cover > 0.0)
+    top = int(covered_rows.min())
+    bottom = int(covered_rows.max()) + 1
+    left = int(covered_columns.min())
+    right = int(covered_columns.max()) + 1
+    layers = np.stack([*places, cover], axis=2)
     return _Region(
-        slice(corner[0] + rows.start, corner[0] + rows.stop),
-        slice(corner[1] + columns.start, corner[1] + columns.stop),
-        texels.astype(np.float32),
+        rows=slice(corner[0] + top, corner[0] + bottom),
+        columns=slice(corner[1] + left, corner[1] + right),
+        texels=layers[top:bottom, left:right].astype(np.float32),
     )

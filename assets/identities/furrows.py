@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Floats64
-from ..smooth import smooth_step
+from ..smooth import bump, smooth_step
 from .lines import ExpressionLines, Fan, Spread
 
 SAMPLE_SPACING = 0.5  # [mm] between samples along a line
@@ -53,8 +53,9 @@ def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[
     spacing = (highest - lowest) / lines.forehead
     spread = min(spacing, 11.0)
     middle = 0.5 * (highest + lowest) + random.uniform(-0.5, 0.5) * (spacing - spread)
-    arch = 1.0 - np.exp(-((x / 16.0) ** 2)) - 0.8 * smooth_step(30.0, 58.0, np.abs(x))
-    course = lines.dip * arch + random.normal(0.0, 0.015) * x + 0.8 * _random_curve(45.0, x, random)
+    arch = 1.0 - bump(x, 0.0, 16.0) - 0.8 * smooth_step(30.0, 58.0, np.abs(x))
+    tilt = random.normal(0.0, 0.015)
+    course = lines.dip * arch + tilt * x + 0.8 * _random_curve(45.0, x, random)
     deepest = 0.44 * lines.forehead_depth * (4.5 / lines.forehead) ** 0.35  # [mm]
     found = []
     for number in range(lines.forehead):
@@ -109,9 +110,8 @@ def frown_lines(lines: ExpressionLines, random: np.random.Generator) -> list[Fur
     deepest_of_all = 0.55 * lines.frown_depth * (0.75 if lines.frown > 2 else 1.0)  # [mm]
     found = []
     for number, place in enumerate(places):
-        own = (place + random.normal(0.0, 0.9 if lines.frown > 1 else 1.8)) * (
-            1.0 + 0.02 * (y - 18.0)
-        )
+        aside = place + random.normal(0.0, 0.9 if lines.frown > 1 else 1.8)
+        own = aside * (1.0 + 0.02 * (y - 18.0))
         own += 0.45 * _random_curve(18.0, y, random)
         low = random.uniform(8.0, 11.0)
         high = random.uniform(29.0, 37.0)
@@ -156,7 +156,8 @@ def _random_curve(length: float, samples: Floats64, random: np.random.Generator)
     waves = length / np.array([0.6, 1.0, 1.7])
     begins = random.uniform(0.0, 2.0 * np.pi, 3)
     amplitudes = np.array([0.8, 0.5, 0.33])
-    return np.asarray(np.cos(2.0 * np.pi * samples[:, None] / waves + begins) @ amplitudes * 1.41)
+    phases = 2.0 * np.pi * samples[:, None] / waves + begins  # (s, 3)
+    return np.asarray(np.cos(phases) @ amplitudes * 1.41)
 
 
 def _sample_coordinates(reach: tuple[float, float]) -> Floats64:

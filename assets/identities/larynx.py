@@ -27,8 +27,9 @@ def larynx_of(person: Person, size: int) -> Relief:
     below = 15.0  # [mm] down from the angle between chin and neck
     half_width = 6.5  # [mm]
     half_height = 9.0  # [mm]
-    notch = 0.25 * np.exp(-((x / 3.5) ** 2) - ((y - throat + below - 6.0) / 4.0) ** 2)
-    ridge = np.exp(-((x / half_width) ** 2) - ((y - throat + below) / half_height) ** 2)
+    up = y - throat + below  # [mm] from the middle of the larynx
+    notch = 0.25 * np.exp(-((x / 3.5) ** 2) - ((up - 6.0) / 4.0) ** 2)
+    ridge = np.exp(-((x / half_width) ** 2) - (up / half_height) ** 2)
     inside = smooth_step(0.0, 0.35, ridge)  # a steeper end would be a rim in oblique light
     heights: Floats64 = person.identity.larynx * inside * (ridge - notch)
     return relief_of(texels, heights, np.ones_like(heights))
@@ -39,7 +40,6 @@ def _neck_texels(size: int) -> Texels:
     """Find the texels of the front of the neck in a map of (size, size) texels."""
     head = load("head")
     x, y, z = head.vertices[head.faces].transpose(2, 0, 1)
-    is_front = (
-        (np.abs(x) < 25.0) & (y < head.vertices[head.anatomy["menton"], 1]) & (z > 30.0)
-    ).all(axis=1)
-    return texels_of(is_front, size)
+    chin = head.vertices[head.anatomy["menton"], 1]
+    is_front = (np.abs(x) < 25.0) & (y < chin) & (z > 30.0)  # (F, 3), of the corners
+    return texels_of(is_front.all(axis=1), size)

@@ -22,7 +22,7 @@ from ...geometry.arrays import Floats32, Floats64
 from ...geometry.texels import Texels
 from ..loading import load
 from ..model import Wrinkles
-from ..smooth import smooth_step
+from ..smooth import bump, smooth_step
 from .person import Person
 from .relief import Relief, add_to, relief_of, texels_of
 
@@ -104,7 +104,7 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     # Heights of visible skin [mm]: the fold hides the whole crease, or nothing of it.
     shows = is_lid * smooth_step(-0.2, 0.5, seen)
     groove_width = 0.6  # [mm]
-    groove = np.exp(-((above / groove_width) ** 2)) * shows
+    groove = bump(above, 0.0, groove_width) * shows
     hangs = smooth_step(-0.1, 1.3, above) * (1.0 - smooth_step(2.0, 7.0, above)) * is_lid
     groove_depth = 0.2  # [mm]
     fold_height = 0.55 + 0.25 * identity.hooding  # [mm]

@@ -44,9 +44,10 @@ def mask(person: Person, colour: Colour) -> Part:
     thickness = 0.7  # [mm]
     inner = axis + level + (reach - thickness)[..., None] * outward
     is_seam = (down < 0.07) | (down > 0.94) | (aside > 0.94)
-    shades = np.stack([(1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases), np.ones(MASK_SHAPE)])
+    outer_shades = (1.0 - 0.06 * is_seam) * (1.0 - 0.3 * creases)
+    shades = np.stack([outer_shades, np.ones(MASK_SHAPE)]).reshape(-1, 1)
     shares = _mandible_weights(person, outer)
-    cover = _Piece(sheet(outer, inner), shades.reshape(-1, 1) * colour, np.tile(shares.ravel(), 2))
+    cover = _Piece(sheet(outer, inner), shades * colour, np.tile(shares.ravel(), 2))
     return _joined_pieces([cover, *_ear_loops(person, outer, shares, colour)])
 
 
@@ -145,10 +146,11 @@ def _membrane(skin: Floats64) -> Floats64:
     below = skin + clearance
     sheet = below.copy()
     for _ in range(600):
-        around = np.pad(sheet, 1, mode="edge")
+        by_rows = np.pad(sheet, ((1, 1), (0, 0)), mode="edge")
+        by_columns = np.pad(sheet, ((0, 0), (1, 1)), mode="edge")
         # The sheet is stiffer across the pleats than along them, because pleats open.
-        mean = 0.3 * (around[:-2, 1:-1] + around[2:, 1:-1])
-        mean += 0.2 * (around[1:-1, :-2] + around[1:-1, 2:])
+        mean = 0.3 * (by_rows[:-2] + by_rows[2:])
+        mean += 0.2 * (by_columns[:, :-2] + by_columns[:, 2:])
         sheet = np.maximum(below, mean)
         sheet[0] = below[0]
         sheet[:, 0] = below[:, 0]
@@ -163,12 +165,13 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
     Both results have the shape (r, c).
     """
     count = 3
-    place = (down - 0.28) / 0.5 * count
-    phase = np.where((place > 0.0) & (place < count), place % 1.0, 0.0)
+    place = (down - 0.28) / 0.5 * count  # number of pleats above
+    in_pleat = place % 1.0
+    phase = np.where((place > 0.0) & (place < count), in_pleat, 0.0)
     flat = smooth_step(1.0, 0.7, aside)
     height = 1.5 * phase * flat
-    crease = np.where((place > 0.0) & (place <= count + 0.15), (place % 1.0) < 0.14, False)
-    return height, crease * (0.35 + 0.65 * flat)
+    is_crease = (place > 0.0) & (place <= count + 0.15) & (in_pleat < 0.14)
+    return height, is_crease * (0.35 + 0.65 * flat)
 
 
 def _mandible_weights(person: Person, sheet: Floats64) -> Floats64:
@@ -190,5 +193,6 @@ def _loop(person: Person, start: Floats64, ear: Floats64, rise: float) -> Floats
     end = np.array([ear[0] + side * 2.5, ear[1] + rise, ear[2] - 4.0])
     straight = beside_head(person.vertices, start, end, 0.9)
     turn = np.linspace(0.0, 1.0, 7)[1:, None]
-    behind = straight[-1] + turn * [-side * 3.0, 0.0, -14.0] + turn**2 * [0.0, -0.5 * rise, 0.0]
-    return np.vstack([straight, behind])
+    backward = turn * [-side * 3.0, 0.0, -14.0]
+    toward_ear = turn**2 * [0.0, -0.5 * rise, 0.0]
+    return np.vstack([straight, straight[-1] + backward + toward_ear])

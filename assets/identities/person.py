@@ -106,8 +106,9 @@ def _form_of(known: Head, identity: Identity) -> _Form:
     vertices = rounded_lobes(lids_on_eyes(known, bent, eyes, lid_fractions))
     chin = vertices[known.anatomy["menton"]]
     vertices = _on_neck(evened_neck(vertices), chin, identity.sex)
-    turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
-    if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
+    normals = cross_products(vertices, known.faces)
+    cosines = (normals * cross_products(known.vertices, known.faces)).sum(axis=1)
+    if (cosines <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError(
             "these weights make no face: a triangle of skin is turned over, or intersects another"
         )
@@ -120,8 +121,9 @@ def _make_head(identity: Identity) -> Person:
     known = load("head")
     vertices, eyes, chin = _form_of(known, identity)
     named = _named_vertices(known)
-    spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
-    larger = float(np.sqrt(spread / usual))
+    spread = np.var(vertices[named], axis=0).sum()
+    usual_spread = np.var(known.vertices[named], axis=0).sum()
+    larger = float(np.sqrt(spread / usual_spread))
     give = 0.2  # smoothing of the warp that organs follow
     warp = ThinPlateSpline(known.vertices[named], vertices[named], give)
     normals = vertex_normals(vertices, known.faces)
@@ -199,9 +201,10 @@ def _resting_face(
     # Brows move tangentially to the forehead; touching lips move together.
     normals = vertex_normals(vertices, known.faces)
     up = np.array([0.0, 1.0, 0.0])
-    line = vertices[known.landmarks[[48, 54, 62, 66]], 1]
+    corners = vertices[known.landmarks[[48, 54]], 1].mean()
+    middle = vertices[known.landmarks[[62, 66]], 1].mean()
     most_turn = 1.8  # [mm]; greatest motion of the corners of the mouth
-    turned = np.clip(identity.corners - line[:2].mean() + line[2:].mean(), -most_turn, most_turn)
+    turned = np.clip(identity.corners - corners + middle, -most_turn, most_turn)
     corner_radius = 9.0  # [mm] within which skin follows the corners of the mouth
     brow_radius = 11.0  # [mm] within which skin follows the brows
     for points, displacement, wide in (

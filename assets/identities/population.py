@@ -82,11 +82,12 @@ def drawn_irises(
     # ITA [deg] up to which nobody has such eyes, and from which their frequency is full.
     fades = {"brown": (-90.0, -80.0), "hazel": (-5.0, 45.0)}
     pale_fade = 15.0, 50.0
-    weights = {
-        name: frequency * float(smooth_step(*fades.get(name, pale_fade), np.array(angle)))
-        for name, frequency in frequencies.items()
-    }
-    weights["brown"] = weights.get("brown", 0.0) + sum(frequencies.values()) - sum(weights.values())
-    names = list(weights)
-    chances = np.array([weights[name] for name in names]) / sum(frequencies.values())
-    return names[int(random.choice(len(names), p=chances))]
+    weights = {}
+    for name, frequency in frequencies.items():
+        none, full = fades.get(name, pale_fade)
+        weights[name] = frequency * float(smooth_step(none, full, np.array(angle)))
+    total = sum(frequencies.values())
+    weights["brown"] = weights.get("brown", 0.0) + total - sum(weights.values())
+    chances = np.array(list(weights.values())) / total
+    number = int(random.choice(len(weights), p=chances))
+    return list(weights)[number]

@@ -16,6 +16,7 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
+from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
 from ..model import Part
 from ..smooth import smooth_step
@@ -154,9 +155,10 @@ def _button_strip(surface: _Surface, colour: Floats64) -> list[_Cloth]:
     for depth in (8.0, 76.0, 152.0):
         midline = np.zeros((2, 1))
         centre, below = surface.down(midline, np.array([[depth], [depth + 6.0]]))[:, 0]
-        slope = (centre - below) / np.linalg.norm(centre - below)
+        slope = unit_vectors(centre - below)
         out = np.cross([1.0, 0.0, 0.0], slope)
-        around = np.sin(turn)[:, None] * [1.0, 0.0, 0.0] + np.cos(turn)[:, None] * slope
+        aside = np.sin(turn)[:, None] * [1.0, 0.0, 0.0]
+        around = aside + np.cos(turn)[:, None] * slope
         profile = ((5.3, 1.2), (5.3, 3.2), (4.6, 3.6), (3.4, 3.2), (0.05, 3.1))
         rows = [centre + radius * around + height * out for radius, height in profile]
         # Triangles run counter-clockwise, seen from outside.
@@ -237,8 +239,7 @@ class _Surface:
 
     def outward(self, columns: Floats64, depths: Floats64) -> Floats64:
         """Return unit normals, (r, n, 3), at columns and depths [mm] that broadcast to (r, n)."""
-        normals = self._read(self._normals, columns, depths)
-        return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+        return unit_vectors(self._read(self._normals, columns, depths))
 
     def columns_at(self, across: Floats64, depths: Floats64) -> Floats64:
         """Find columns of the front, (r, n), where x is `across` [mm]; depths: [mm], (r, 1)."""
@@ -249,17 +250,21 @@ class _Surface:
         return np.stack(rows) % SHIRT_COLUMNS
 
     def _read(self, values: Floats64, columns: Floats64, depths: Floats64) -> Floats64:
+        """Interpolate values of the grid's points, linearly between columns and between rows."""
         columns, depths = np.broadcast_arrays(columns, depths)
         before = np.minimum(columns.astype(int), SHIRT_COLUMNS - 1)
+        after = before + 1
         fraction = columns - before
+        # Depths of all rows in these columns, (rows, r, n).
         lengths = self._depths[:, before] + fraction * np.diff(self._depths, axis=1)[:, before]
         row = np.clip((lengths <= depths).sum(axis=0) - 1, 0, len(lengths) - 2)
         upper = np.take_along_axis(lengths, row[None], axis=0)[0]
         lower = np.take_along_axis(lengths, row[None] + 1, axis=0)[0]
         part = np.clip((depths - upper) / (lower - upper), 0.0, 1.0)[..., None]
         fraction = fraction[..., None]
-        above = values[row, before] + fraction * (values[row, before + 1] - values[row, before])
-        below = values[row + 1, before] * (1.0 - fraction) + fraction * values[row + 1, before + 1]
+        above = values[row, before] + fraction * (values[row, after] - values[row, before])
+        row = row + 1
+        below = values[row, before] * (1.0 - fraction) + fraction * values[row, after]
         return np.asarray(above + part * (below - above))
 
 

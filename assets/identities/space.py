@@ -153,6 +153,8 @@ class PersonSpace:
         chance = np.clip(random.normal(size=len(self.modes)), -MOST_DEVIATIONS, MOST_DEVIATIONS)
         near_norms = float(random.uniform())
         rows, beside, apart = self._measured(sex)
+        # Minimise the sum of the squared weights, of the squared deviations from the norms, and of
+        # the squared distances of points from their goals. This gives linear equations.
         unit = np.eye(len(self.modes))
         # These measures count more. Without this, noses would be too long and too far forward, and
         # women's upper lips would be as high as men's.
@@ -178,8 +180,9 @@ class PersonSpace:
         )
         aged = decades * np.array([aged_measures.get(code, 0.0) for code in NORMS])
         tolerance = 0.7  # [mm] of the points' motions
+        held_points = held + self.pushed.T @ self.pushed / tolerance**2
         pushes = asked @ (apart + aged) + self.pushed.T @ far / tolerance**2
-        own = np.linalg.solve(held + self.pushed.T @ self.pushed / tolerance**2, pushes)
+        own = np.linalg.solve(held_points, pushes)
         mean = middle + own
         # Standard deviations of the first mode (the size of the head), of the second, and of the
         # fifth and all later ones; between the second and the fifth they are interpolated.
@@ -196,14 +199,12 @@ class PersonSpace:
         """
         found = measures_of(self.mean, self.anatomy)
         norms = norms_of(sex)
-        mean_measures = np.array(
-            [0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()]
-        )
-        surface = np.array([found[code] - PRESSED_DEPTHS.get(code, 0.0) for code in NORMS])
-        means = np.array([sample.mean for sample in norms.values()])
+        of_model = np.array([found[code] - PRESSED_DEPTHS.get(code, 0.0) for code in NORMS])
+        of_both = np.array([0.5 * (norm.women.mean + norm.men.mean) for norm in NORMS.values()])
+        of_sex = np.array([sample.mean for sample in norms.values()])
         deviations = np.array([sample.deviation for sample in norms.values()])
         rows = self.slopes / deviations[:, None]
-        return rows, (mean_measures - surface) / deviations, (means - mean_measures) / deviations
+        return rows, (of_both - of_model) / deviations, (of_sex - of_both) / deviations
 
 
 @lru_cache(maxsize=1)
@@ -213,18 +214,19 @@ def person_space() -> PersonSpace:
     arrays = read_arrays(head.file_beside("_modes.npz"))
     modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))
     mean = head.vertices - np.tensordot(own, modes, 1)
-    sides = [
-        [measures_of(mean + half * mode, head.anatomy) for half in (0.5, -0.5)] for mode in modes
-    ]
-    slopes = np.array([[more[code] - less[code] for more, less in sides] for code in NORMS])
-    named = [point for point, *_ in POINTS]
-    numbers = [
-        head.landmarks[point] if isinstance(point, int) else head.anatomy[point] for point in named
-    ]
-    directions = np.array([direction for _, direction, *_ in POINTS], dtype=np.float64)
-    directions = unit_vectors(directions)
+    by_mode = []  # (k, m) changes of the measures
+    for mode in modes:
+        more = measures_of(mean + 0.5 * mode, head.anatomy)
+        less = measures_of(mean - 0.5 * mode, head.anatomy)
+        by_mode.append([more[code] - less[code] for code in NORMS])
+    slopes = np.ascontiguousarray(np.array(by_mode).T)
+    numbers = []
+    for point, *_ in POINTS:
+        numbers.append(head.landmarks[point] if isinstance(point, int) else head.anatomy[point])
+    directions = unit_vectors(np.array([direction for _, direction, *_ in POINTS], np.float64))
     corner = modes[:, head.anatomy["exocanthion_left"]] * [0.0, 1.0, 1.0]
-    pushed = np.einsum("kni,ni->nk", modes[:, numbers] - corner[:, None], directions)
+    motions = modes[:, numbers] - corner[:, None]  # (k, n, 3)
+    pushed = np.einsum("kni,ni->nk", motions, directions)
     return PersonSpace(mean=mean, modes=modes, slopes=slopes, pushed=pushed, anatomy=head.anatomy)
 
 

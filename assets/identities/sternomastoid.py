@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..loading import load
-from ..smooth import smooth_step
+from ..smooth import bump, smooth_step
 from .person import Person
 from .relief import Relief, relief_of, texels_of
 
@@ -60,10 +60,10 @@ def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     centre_line = np.radians(np.interp(y, *COURSE_POINTS.T))
     off = np.hypot(x, z - axis_depth) * (angle - centre_line)  # [mm] in front of the centre line
     belly_width = 8.5  # [mm]
-    belly = np.exp(-((off / belly_width) ** 2))
+    belly = bump(off, 0.0, belly_width)
     # The tendon lies at the front edge of the belly, near the breastbone.
-    tendon = 0.7 * np.exp(-(((off - 6.5) / 3.4) ** 2)) * smooth_step(-108.0, -140.0, y)
-    hollow = 0.5 * np.exp(-(((off - 14.5) / 5.0) ** 2)) * smooth_step(-100.0, -125.0, y)
+    tendon = 0.7 * bump(off, 6.5, 3.4) * smooth_step(-108.0, -140.0, y)
+    hollow = 0.5 * bump(off, 14.5, 5.0) * smooth_step(-100.0, -125.0, y)
     inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)
     inside *= smooth_step(-24.0, -14.0, off) * smooth_step(-158.0, -148.0, y)
     kept = inside * (belly + np.abs(tendon - hollow)) > 2e-3

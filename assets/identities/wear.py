@@ -109,10 +109,11 @@ def glasses(person: Person, frame: GlassesFrame, nose: Floats64 | None = None) -
     moved = [each + np.array([0.0, 0.0, forward]) for each in front]
     tubes = [tube(each, frame.thickness, closed=True) for each in moved[:2]]
     tubes.append(tube(moved[2], frame.thickness, closed=False))
+    outermost = np.argmax(rim[:, 0] + 0.4 * rim[:, 1])  # outside, and high
+    left_hinge = moved[0][outermost]
     for side, name in ((1.0, "left"), (-1.0, "right")):
-        hinge = moved[0][np.argmax(rim[:, 0] + 0.4 * rim[:, 1])]
         ear = skin[person.anatomy[f"tragion_{name}"]]
-        temple = _temple_path(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
+        temple = _temple_path(skin, left_hinge * [side, 1.0, 1.0], ear, frame.thickness)
         tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
     surface = joined(tubes)
     return Part(
@@ -144,11 +145,10 @@ def _depth_at(skin: Floats64, points: Floats64) -> float:
     """
     beside = 4.0  # [mm] in x and y around a point, within which skin counts
     near = scipy.spatial.cKDTree(skin[:, :2]).query_ball_point(points[:, :2], beside)
-    depths = [
-        float(skin[found, 2].max() - point[2])
-        for found, point in zip(near, points, strict=True)
-        if found
-    ]
+    depths = []
+    for found, point in zip(near, points, strict=True):
+        if found:
+            depths.append(float(skin[found, 2].max() - point[2]))
     return max(depths, default=0.0)
 
 
@@ -158,5 +158,6 @@ def _temple_path(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: floa
     top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
     straight = beside_head(skin, hinge, top, 0.5 * thickness)
     turn = np.linspace(0.0, 1.0, 9)[1:, None]
-    behind = straight[-1] + turn * [0.0, 0.0, -16.0] + turn**2 * [-side * 2.0, -17.0, 0.0]
-    return np.vstack([straight, behind])
+    backward = turn * [0.0, 0.0, -16.0]
+    down = turn**2 * [-side * 2.0, -17.0, 0.0]
+    return np.vstack([straight, straight[-1] + backward + down])

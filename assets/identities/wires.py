@@ -33,7 +33,8 @@ def beside_head(skin: Floats64, start: Floats64, end: Floats64, radius: float) -
     least[0] = side * straight[0, 0]
     wanted = least.copy()
     for _ in range(200):  # until it is taut
-        wanted[1:-1] = np.maximum(least[1:-1], 0.5 * (wanted[:-2] + wanted[2:]))
+        mean_of_neighbours = 0.5 * (wanted[:-2] + wanted[2:])
+        wanted[1:-1] = np.maximum(least[1:-1], mean_of_neighbours)
     straight[:, 0] = side * wanted
     return straight
 
@@ -50,8 +51,11 @@ def joined(pieces: Sequence[Tube]) -> Tube:
     """Join wires and sheets to one surface."""
     points = np.vstack([each.points for each in pieces])
     normals = np.vstack([each.normals for each in pieces])
-    firsts = np.cumsum([0, *(len(each.points) for each in pieces[:-1])])
-    faces = [each.faces + first for each, first in zip(pieces, firsts, strict=True)]
+    faces = []
+    first = 0  # number of the piece's first point
+    for each in pieces:
+        faces.append(each.faces + first)
+        first += len(each.points)
     return Tube(points, normals, np.vstack(faces).astype(np.int32))
 
 
@@ -63,15 +67,14 @@ def tube(path: Floats64, thickness: float, *, closed: bool) -> Tube:
     else:
         along = np.gradient(path, axis=0)
     along = unit_vectors(along)
-    first = np.cross(along, [0.31, 0.52, 0.79])
-    first = unit_vectors(first)
+    first = unit_vectors(np.cross(along, [0.31, 0.52, 0.79]))
     second = np.cross(along, first)
     angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)[:, None, None]
     normals = np.cos(angle) * first + np.sin(angle) * second  # (corners, n, 3)
     points = path + 0.5 * thickness * normals
     numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
-    rows = np.vstack([numbers, numbers[:1]])
-    faces = grid_faces(rows, closed=closed)
+    around = np.vstack([numbers, numbers[:1]])
+    faces = grid_faces(around, closed=closed)
     return Tube(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
 
 
@@ -88,7 +91,8 @@ def sheet(outer: Floats64, inner: Floats64) -> Tube:
     left = numbers[-2:0:-1, 0]
     edge = np.concatenate([upper, right, lower, left])
     rim = grid_faces(np.stack([edge + count, edge]), closed=True)
-    sides = [grid_faces(numbers), grid_faces(numbers)[:, ::-1] + count, rim]
+    outside = grid_faces(numbers)
+    inside = outside[:, ::-1] + count
     points = np.vstack([outer.reshape(-1, 3), inner.reshape(-1, 3)])
-    faces = np.vstack(sides).astype(np.int32)
+    faces = np.vstack([outside, inside, rim]).astype(np.int32)
     return Tube(points, vertex_normals(points, faces), faces)
