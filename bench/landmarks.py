@@ -59,6 +59,7 @@ RIGHT_LANDMARKS = {
 }
 MOST_ERROR = {"dlib": 3.0, "mediapipe": 2.8}  # percent, on frontal pictures
 MOST_CONSTANT = 1.5  # percent, of any point
+FAILED_ERROR = 10.0  # percent; a detector with a larger mean error in a picture missed the face
 MOST_YAW = 10.0  # [degrees]; heads of frontal pictures turn less
 
 
@@ -300,6 +301,13 @@ def report(finding: DetectorErrors) -> str:
         "",
         *table("points:<7|all:6.2f|frontal:8.2f|largest constant:17.2f", rows),
     ]
+    of_pictures = finding.distances[frontal].mean(axis=1)
+    failure_count = (of_pictures > FAILED_ERROR).sum()
+    lines += [
+        "",
+        f"frontal pictures: median {_median(of_pictures):.2f} %; the detector misses the face in "
+        f"{failure_count} (above {FAILED_ERROR:g} %)",
+    ]
     if offsets:
         lines += [
             "",
@@ -322,3 +330,7 @@ def targets(finding: DetectorErrors) -> list[Target]:
 
 def _mean(values: Floats64) -> float:
     return float(values.mean()) if values.size else float("nan")
+
+
+def _median(values: Floats64) -> float:
+    return float(np.median(values)) if values.size else float("nan")
