@@ -59,12 +59,27 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         if own is None and socket is None:
             iris = radius / eye.radius * eye.iris_radius
         centre, radius = own or socket or (centre, radius)
+        if own is not None:
+            radius = _within_lids(centre, radius, target)
         most_iris = 0.8  # greatest radius of an iris, in radii of the ball; some balls are small
         iris = min(iris, most_iris * radius)
         if own is None:
             centre[2] += _forward_clearance(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, iris))
     return tuple(eyes)
+
+
+def _within_lids(centre: Floats64, radius: float, lids: Floats64) -> float:
+    """Return the radius of a file's eyeball, smaller if the ball would pierce the lids' corners.
+
+    Some makers' balls do, and a dark scrap would stay beside the corner of a shut eye.
+
+    lids: landmarks of the eye [mm], (6, 3).
+    """
+    most_shrunk = 0.05  # relative to the radius
+    nearest = float(np.linalg.norm(lids - centre, axis=1).min())
+    clearance = 0.2  # [mm] between ball and landmark
+    return float(np.clip(nearest - clearance, (1.0 - most_shrunk) * radius, radius))
 
 
 def _points_between(fitted: FittedSkin, is_lid: Flags, centre: Floats64) -> Floats64:

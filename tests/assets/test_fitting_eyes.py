@@ -162,6 +162,24 @@ def test_eyeballs_of_the_file_set_place_and_size(radius, back):
         check_part(part)
 
 
+def test_a_ball_of_the_file_does_not_pierce_a_corner_of_the_lids():
+    """A ball that reaches half a millimetre out of a corner of its eye shrinks."""
+    head = assets.load("head")
+    points = head.vertices[head.landmarks]
+    normals = vertex_normals(head.vertices, head.faces)
+    corners = [points[36:42], points[42:48]]
+    nearest = [
+        norm(lids - eye.centre, axis=1).min() for lids, eye in zip(corners, head.eyes, strict=True)
+    ]
+    own = tuple(
+        _ball(eye.centre, reach + 0.5)[0] for eye, reach in zip(head.eyes, nearest, strict=True)
+    )
+    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight, own)
+    for eye, lids in zip(place_eyes(head, skin), corners, strict=True):
+        reach = norm(lids - eye.centre, axis=1).min()
+        assert reach - 0.5 < eye.radius < reach
+
+
 def test_an_iris_is_smaller_than_its_ball():
     """An eyeball that is small for its face still leaves visible corners."""
     head = assets.load("head")
