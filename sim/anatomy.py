@@ -67,10 +67,10 @@ class Anatomy:
         """Convert lines [mm] to head units, turned with the head."""
         space = self._model.space
         head = self._bones.head
-        return {
-            name: [space.to_head(line + head.displacements(line)) for line in found]
-            for name, found in lines.items()
-        }
+        turned = {}
+        for name, found in lines.items():
+            turned[name] = [space.to_head(line + head.displacements(line)) for line in found]
+        return turned
 
     def muscle_at(self, point: npt.ArrayLike, reach: float) -> str | None:
         """The muscle whose fibres come nearest to a point (3,) of the skin, within `reach`.

@@ -80,12 +80,17 @@ class Grip(NamedTuple):
         is 0 are free to slide on each other.
         """
         unbroken_seal = 100.0  # factor of the rig's seal in a closed mouth: gaps below 0.1 mm
-        stiffness, gap_stiffness = (
-            each**5 / (1.0 - each + 1.0 / unbroken_seal) for each in (slid * strength, strength)
-        )
+
+        def stiffness_of(part: float) -> float:
+            return part**5 / (1.0 - part + 1.0 / unbroken_seal)
+
         full_press_activity = 0.25  # activity from which they overlap in full
         press = min(activity / full_press_activity, 1.0)
-        return cls(stiffness, gap_stiffness, PRESSED_OVERLAP * slid * strength * press)
+        return cls(
+            stiffness=stiffness_of(slid * strength),
+            gap_stiffness=stiffness_of(strength),
+            overlap=PRESSED_OVERLAP * slid * strength * press,
+        )
 
 
 SEALED_GRIP = Grip.from_seal(1.0, 0.0)

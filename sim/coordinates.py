@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
-from ..geometry.vectors import plus, rotated, toward, write_row
+from ..geometry.vectors import less, plus, rotated, row_of, times, toward, write_row
 from ..jit import njit
 
 
@@ -103,16 +103,13 @@ def to_posed_head(
     """
     broken = 0
     for i in range(len(x)):
-        dx = x[i, 0] - rest[i, 0]
-        dy = x[i, 1] - rest[i, 1]
-        dz = x[i, 2] - rest[i, 2]
-        if not np.isfinite(dx + dy + dz):
+        moved = less(row_of(x, i), 1.0, row_of(rest, i))
+        if not np.isfinite(moved[0] + moved[1] + moved[2]):
             broken += 1
             continue
-        px = head_rest[i, 0] + dx * axes[0, 0] + dy * axes[1, 0] + dz * axes[2, 0]
-        py = head_rest[i, 1] + dx * axes[0, 1] + dy * axes[1, 1] + dz * axes[2, 1]
-        pz = head_rest[i, 2] + dx * axes[0, 2] + dy * axes[1, 2] + dz * axes[2, 2]
-        here = px, py, pz
+        here = row_of(head_rest, i)
+        for k in range(3):
+            here = plus(here, times(moved[k], row_of(axes, k)))
         turned = plus(rotated(turn, here), (turn[0, 3], turn[1, 3], turn[2, 3]))
         write_row(out, i, toward(here, turned, head_weight[i, 0]))
     return broken

@@ -245,8 +245,8 @@ def lift_triangles(state: State, eyes: EyeContact, looks: Floats64) -> None:
         if not cut:
             lift[:, 0] = 0.0
             cut = True
-        weight = shares[where]
-        part = deepest / (weight[0] ** 2 + weight[1] ** 2 + weight[2] ** 2)
+        weight = row_of(shares, where)
+        part = deepest / dot(weight, weight)
         for k in range(3):
             i = long.faces[t, k]
             lift[i, 0] = max(lift[i, 0], part * weight[k])

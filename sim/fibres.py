@@ -145,7 +145,8 @@ def bent_to_skin(lines: Floats64, surface: SkinSurface, fractions: Floats64) -> 
     skin, normal = over_skin(lines.reshape(-1, 3), surface, surface.positions, surface.normals)
     normal = unit_vectors(normal)
     off = skin - lines.reshape(-1, 3)
-    correction = ((off * normal).sum(axis=1, keepdims=True) * normal).reshape(lines.shape)
+    height = (off * normal).sum(axis=1, keepdims=True)  # of the skin above the line
+    correction = (height * normal).reshape(lines.shape)
     for _ in range(2):  # a single vertex must not make a kink in a fibre
         before = correction[:, :-2]
         after = correction[:, 2:]
@@ -160,7 +161,8 @@ def over_skin(points: Floats64, surface: SkinSurface, *fields: Floats64) -> tupl
     distance, vertices = surface.tree.query(points, k=range(1, count + 1))
     # The furthest neighbour has weight 0, so that a tie between two of them cannot bend a midline
     # fibre.
-    weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
+    relative = distance / np.maximum(distance[:, -1:], 1e-9)  # to that of the furthest
+    weight = (1.0 - relative**2) ** 2 + 1e-12
     weight /= weight.sum(axis=1, keepdims=True)
     return tuple(np.einsum("nk,nk...->n...", weight, field[vertices]) for field in fields)
 

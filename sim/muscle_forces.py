@@ -38,7 +38,7 @@ from .fibres import (
     over_skin,
 )
 from .muscle_stack import bottom_up, points_along, stack_muscles
-from .muscles import LineHold, PlacedLine, PlacedMuscle, Ring, skin_shares
+from .muscles import LineHold, PlacedMuscle, Ring, skin_shares
 from .rig import LinearMuscle, Rig
 from .skull import RigidMotion
 from .state import State
@@ -109,9 +109,8 @@ class MuscleForces:
             arc = arc_lengths(moved)
             remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
-            line = [
-                np.interp(fixed + remaining * (arc - fixed), arc, moved[:, k]) for k in range(3)
-            ]
+            contracted = fixed + remaining * (arc - fixed)
+            line = [np.interp(contracted, arc, coordinate) for coordinate in moved.T]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
         return lines
 
@@ -237,11 +236,6 @@ def _bundle_lines(
     )
 
 
-def _gain(line: PlacedLine) -> float:
-    """Return the gain of a line's pull; 0 for a sphincter."""
-    return 0.0 if line.fibre is None else line.fibre.gain
-
-
 PartOfSkin = tuple[Floats64, Floats64]  # weight k w A and value of each vertex of the skin
 
 
@@ -249,14 +243,13 @@ def _pulling_attachments(
     placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Floats64
 ) -> list[PartOfSkin]:
     """Return the attachments of skin to each line that pulls, with gain; arcs are in samples."""
-    return [
-        (
-            placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
-            line.skin.arc * (SAMPLE_COUNT - 1),
-        )
-        for n in order
-        for line in placed[n].lines
-    ]
+    parts: list[PartOfSkin] = []
+    for n in order:
+        k = placed[n].muscle.stiffness * strength
+        for line in placed[n].lines:
+            gain = 0.0 if line.fibre is None else line.fibre.gain  # sphincters do not pull
+            parts.append((k * line.skin.weight * gain, line.skin.arc * (SAMPLE_COUNT - 1)))
+    return parts
 
 
 def _carrying_attachments(

@@ -101,19 +101,15 @@ def place_muscles(
                 lines = []
                 for fibre in muscle.fibres:
                     points = next(laid)
-                    lines.append(
-                        PlacedLine(
-                            points, fibre, attach_to_fibre(muscle, fibre, points, side, skin)
-                        )
-                    )
+                    hold = attach_to_fibre(muscle, fibre, points, side, skin)
+                    lines.append(PlacedLine(points, fibre, hold))
                 placed.append(PlacedMuscle(name, muscle, side, tuple(lines)))
             elif isinstance(muscle, RingMuscle):
                 points = next(laid)
                 hold = attach_to_ring(muscle, points, landmarks, side, skin)
+                line = PlacedLine(points, None, hold)
                 ring = partial(_skin_of_ring, muscle, skin.positions, landmarks, hold.weight, side)
-                placed.append(
-                    PlacedMuscle(name, muscle, side, (PlacedLine(points, None, hold),), cache(ring))
-                )
+                placed.append(PlacedMuscle(name, muscle, side, (line,), cache(ring)))
     return tuple(placed)
 
 
@@ -194,9 +190,8 @@ def attach_to_ring(
     found = Attachment(weight, np.zeros(count), np.zeros((count, 3)))
     found.steady[on] = weight[on, None] * _ring_pull(muscle, landmarks, side, held)
     x = held.positions
-    if (
-        muscle.shape or muscle.centre
-    ) == MOUTH_POINT:  # between the lips both halves are equally near
+    is_around_mouth = (muscle.shape or muscle.centre) == MOUTH_POINT
+    if is_around_mouth:  # between the lips both halves are equally near
         to_line = np.where(held.lip_side > 0.0, up, down) * np.maximum(1.0 - rho[on], 0.0)
         x = x + (held.lip_side * to_line)[:, None] * UP_AXIS
     found.arc[on] = arcs_along(points, x)
@@ -341,7 +336,9 @@ def _skin_of_ring(
     shares = skin_shares(places, x[attached, :2], weight[attached])
     smoothing_rounds = 8  # by eye: without them, the line has corners at vertices
     for _ in range(smoothing_rounds):
-        shares[1:-1] = 0.25 * shares[:-2] + 0.5 * shares[1:-1] + 0.25 * shares[2:]
+        before = shares[:-2]
+        after = shares[2:]
+        shares[1:-1] = 0.25 * before + 0.5 * shares[1:-1] + 0.25 * after
     return LineHold(attached, shares)
 
 

@@ -113,30 +113,33 @@ class Pull:
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
-            centre = np.linalg.norm(
-                self._middle @ self._slope[:, self._vertices] @ self._seen, axis=1
-            )
-            fraction = centre / np.linalg.norm(self._slope, axis=2).max(axis=1, initial=1e-12)
-            # A control is meant for other skin if the skin next to the mouse moves less than this
-            # share of the control's largest motion. Where all controls move the skin little, as on
-            # the nose, those that move it most are used.
-            least_of_largest = 0.25
-            least_of_best = 0.7
-            best = fraction.max(initial=0.0)
-            is_meant = fraction > min(least_of_largest, least_of_best * best)
-            # Other controls move the finger's rim more than the skin at the mouse.
-            least_of_finger = 0.7
-            lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
-            self._is_at_mouse = (centre > least_of_finger * lengths)[is_meant]
-            self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
-            self._limits = self._limits[:, is_meant]
-            self._value = self._start = self._start[is_meant]
-            self._slope = self._slope[is_meant]
+            self._leave_out_others()
             self._first = self._slope.copy()
             lengths = np.linalg.norm(self._slope, axis=2)
             under = lengths[:, self._vertices].max(axis=1)
             self._is_at_home = under > 0.95 * lengths.max(axis=1)
         return bool(self.candidates)
+
+    def _leave_out_others(self) -> None:
+        """Leave out candidates that are meant for other skin."""
+        at_mouse = self._middle @ self._slope[:, self._vertices] @ self._seen  # (candidates, 3)
+        centre = np.linalg.norm(at_mouse, axis=1)
+        fraction = centre / np.linalg.norm(self._slope, axis=2).max(axis=1, initial=1e-12)
+        # A control is meant for other skin if the skin next to the mouse moves less than this share
+        # of the control's largest motion. Where all controls move the skin little, as on the nose,
+        # those that move it most are used.
+        least_of_largest = 0.25
+        least_of_best = 0.7
+        best = fraction.max(initial=0.0)
+        is_meant = fraction > min(least_of_largest, least_of_best * best)
+        # Other controls move the finger's rim more than the skin at the mouse.
+        least_of_finger = 0.7
+        lengths = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
+        self._is_at_mouse = (centre > least_of_finger * lengths)[is_meant]
+        self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
+        self._limits = self._limits[:, is_meant]
+        self._value = self._start = self._start[is_meant]
+        self._slope = self._slope[is_meant]
 
     @property
     def changes(self) -> dict[Names, float]:
@@ -273,8 +276,8 @@ class Pull:
             self._probe.step(STEP_LENGTH)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         most_candidates = 16  # number of examined controls: those that move the finger's skin most
-        # Two equal controls are both included.
-        least = 0.99 * sorted([0.0, *moved])[-most_candidates:][0]
+        strongest = sorted([0.0, *moved])[-most_candidates:]
+        least = 0.99 * strongest[0]  # two equal controls are both included
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
     def _square(self, by: Floats64) -> float:
@@ -340,12 +343,15 @@ class Pull:
         effort = square_price * self._drawn
         changed = self._value - self._start
         price = 0.0041  # of a control at its limit, against skin that does not move at all
+        back = (self._from - now).ravel()  # of the rest of the face, to its place before the pull
         return Lasso(
-            under @ under.T + others @ slope.T + effort * np.eye(count),
-            under @ off + others @ (self._from - now).ravel() - effort * changed,
-            0.5 * price * self._drawn / np.abs(self._limits).max(axis=0),
-            changed, self._low - self._start, self._high - self._start,
-        )  # fmt: skip
+            gram=under @ under.T + others @ slope.T + effort * np.eye(count),
+            right=under @ off + others @ back - effort * changed,
+            price=0.5 * price * self._drawn / np.abs(self._limits).max(axis=0),
+            changed=changed,
+            low=self._low - self._start,
+            high=self._high - self._start,
+        )
 
 
 def _rest(clone: Simulation, values: dict[str, float]) -> None:

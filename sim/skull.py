@@ -144,10 +144,11 @@ class Skull:
 @njit
 def rotation(axis: Triple | Floats64, angle: float) -> Floats64:
     """Rotation matrix (3, 3) by `angle` [rad] about `axis` (Rodrigues)."""
-    length = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
-    x = axis[0] / length
-    y = axis[1] / length
-    z = axis[2] / length
+    x, y, z = axis
+    length = math.sqrt(x * x + y * y + z * z)
+    x /= length
+    y /= length
+    z /= length
     c = math.cos(angle)
     s = math.sin(angle)
     d = 1.0 - c
@@ -223,8 +224,10 @@ def move_mandible(
     pivot = left if values[2] > 0.0 else right
     turn = times(aside, opened)
     shift = pivot + turned(aside, shift - pivot)
+    opening, forward, sideways = glides
     for k in range(3):
-        shift[k] += values[0] * glides[0][k] + values[1] * glides[1][k] + values[2] * glides[2][k]
+        glide = values[0] * opening[k] + values[1] * forward[k] + values[2] * sideways[k]
+        shift[k] += glide
     return turn, shift
 
 

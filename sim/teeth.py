@@ -41,8 +41,9 @@ class Teeth(NamedTuple):
         points = np.where(self.lower[:, None], in_jaw, points)
         width, depth, axis, low, high = self.arch.T
         radius_ratio = _relative_distances(points, self.arch)
-        met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
-        sunk = np.where(met, (self.least - radius_ratio) * np.minimum(width, depth), 0.0)
+        _, height, forward = points.T
+        is_met = (forward > axis) & (height > low) & (height < high)
+        sunk = np.where(is_met, (self.least - radius_ratio) * np.minimum(width, depth), 0.0)
         return float(max(sunk.max(), 0.0))
 
 

@@ -102,11 +102,10 @@ class Tongue:
         groove_width = 2.6  # mm
         groove = groove_depth * risen * smoothstep((self.along - 0.03) / 0.2)
         off -= groove * np.exp(-((beside / groove_width) ** 2)) * (self.off > 0.0)
-        bent = self.rest.copy()
-        bent[:, 0] = beside
-        bent[:, 1] = at_vertices(spine[:, 1]) + off * np.cos(at_vertices(turn))
-        bent[:, 2] = at_vertices(spine[:, 0]) - off * np.sin(at_vertices(turn))
-        return bent
+        angle = at_vertices(turn)
+        up_now = at_vertices(spine[:, 1]) + off * np.cos(angle)
+        forward_now = at_vertices(spine[:, 0]) - off * np.sin(angle)
+        return np.column_stack([beside, up_now, forward_now])
 
     def _passage(self, lips: Floats64, upper_edge: Floats64) -> tuple[float, float]:
         """How far the tongue may come out, 0..1, and its thickness between the teeth [mm]."""
@@ -134,13 +133,12 @@ class Tongue:
         body_rise = 5.0, 4.0  # mm that its middle comes forward and up
         overhang = 4.0  # mm from the lip forward to the tip at the end
         tip_drop = 9.0  # mm from the edge of the lip down to the tip at the end
-        path = np.array([
-            self.spine[-1] + (root_forward, 0.0),
-            self.spine[SPINE_POINT_COUNT // 2] + body_rise,
-            self.lower_edge[[2, 1]] + (-self.PATH_SETBACK, above),
-            (middle[2] - 1.0, over_lip),
-            (front + above + overhang, low[1] - tip_drop),
-        ])  # fmt: skip
+        root = self.spine[-1] + (root_forward, 0.0)
+        body = self.spine[SPINE_POINT_COUNT // 2] + body_rise
+        behind_teeth = self.lower_edge[[2, 1]] + (-self.PATH_SETBACK, above)
+        on_lip = (middle[2] - 1.0, over_lip)
+        end = (front + above + overhang, low[1] - tip_drop)
+        path = np.array([root, body, behind_teeth, on_lip, end])
         lengths = arc_lengths(path)
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
         # The root is stretched, and the tip keeps its shape.
