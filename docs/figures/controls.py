@@ -26,13 +26,14 @@ LAYER_PICTURES = {  # file -> the layer, and a number of columns that fills the 
 
 def without_sides(names: Sequence[str]) -> list[str]:
     """The names without sides of pairs, or with left sides if no name stands for both."""
-    known = set(names)
-    return [
-        name
-        for name in names
-        if not (name.endswith(("_left", "_right")) and name.rpartition("_")[0] in known)
-        and not (name.endswith("Right") and f"{name.removesuffix('Right')}Left" in known)
-    ]
+    kept = []
+    for name in names:
+        if name.endswith(("_left", "_right")) and name.rpartition("_")[0] in names:
+            continue  # a name stands for both sides
+        if name.endswith("Right") and f"{name.removesuffix('Right')}Left" in names:
+            continue
+        kept.append(name)
+    return kept
 
 
 def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
@@ -41,16 +42,14 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     is_turned = name.removesuffix("_left") in turning_units
     raised = 11.0  # [mm] of the view above the landmarks, because foreheads wrinkle
     target = None if is_turned else scene.framing.focus + np.array([0.0, raised, 0.0])
-    shown_over = {
-        "mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}
-    }  # without its other shape, this shape shows nothing
-    pose = shown_over.get(name, {name: 1.0})
-    views = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
-    far_views = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
-    images = [
-        figures.shoot(scene, pose, CaptureOptions(size, camera=view), target)
-        for view in (far_views if is_turned else views)
-    ]
+    pose = {name: 1.0}
+    if name == "mouthClose":  # over a closed mouth it shows nothing
+        pose = {"mouthClose": 0.5, "jawOpen": 0.5}
+    zoom = 1.1 if is_turned else 1.7
+    images = []
+    for view in (f"0,0,{zoom}", f"-34,3,{zoom}"):  # front and three-quarter
+        options = CaptureOptions(size, camera=view)
+        images.append(figures.shoot(scene, pose, options, target))
     return np.concatenate(images, axis=1)
 
 

@@ -126,10 +126,11 @@ def dataset() -> Image:
     row_count = 4
     shots = [studio.shoot(index) for index in range(columns * row_count)]
     labelled_samples = (2, 3, 10, 11, 14, 22)  # numbers of samples
-    images = [shot.image for shot in shots] + [
-        _labelled(shots[index]) for index in labelled_samples
-    ]
-    rows = [np.hstack(images[k : k + columns]) for k in range(0, len(images), columns)]
+    images = [shot.image for shot in shots]
+    images += [_labelled(shots[index]) for index in labelled_samples]
+    rows = []
+    for first in range(0, len(images), columns):
+        rows.append(np.hstack(images[first : first + columns]))
     return np.vstack(rows)
 
 

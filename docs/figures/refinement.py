@@ -19,7 +19,7 @@ from PIL import ImageDraw
 from risorius.app.capture.captions import font
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Floats64
-from risorius.refine.kahler.table import POINT_COORDINATES, splits_of, subdivide
+from risorius.refine.kahler.table import POINT_COORDINATES, points_on, splits_of, subdivide
 
 Points = npt.NDArray[np.float64]
 
@@ -92,16 +92,22 @@ def points_in(corners: Points) -> Points:
     return np.asarray(POINT_COORDINATES @ corners / 4.0)
 
 
+def apart(point: Points, centre: Points, distance: float) -> Points:
+    """Move a point (2,) by a distance [pixels] away from a centre; below 0 toward it."""
+    outward = point - centre
+    return np.asarray(point + distance * outward / np.linalg.norm(outward))
+
+
 def new_points(splits: tuple[int, int, int]) -> list[int]:
     """Numbers of the points on split edges."""
     middles = []
     quarters = []
     for edge, count in enumerate(splits):
-        middle = 3 + 3 * edge
+        near_start, middle, near_end = points_on(edge)
         if count > 0:
             middles.append(middle)
         if count == 2:
-            quarters += [middle + 1, middle + 2]
+            quarters += [near_start, near_end]
     return middles + quarters
 
 
@@ -150,17 +156,11 @@ def lookup() -> Image:
         else:
             colour = NEW_COLOUR if number % 3 == 0 else SECOND_COLOUR
         diagram.disc(point, colour)
-        outward = point - centre
-        diagram.text(point + 13 * outward / np.linalg.norm(outward), str(number), colour, 12)
+        diagram.text(apart(point, centre, 13), str(number), colour, 12)
     faint_grey = (150, 154, 162)
     for edge in range(3):
-        inward = centre - points[3 + 3 * edge]
-        diagram.text(
-            points[3 + 3 * edge] + 22 * inward / np.linalg.norm(inward),
-            f"edge {edge}",
-            faint_grey,
-            11,
-        )
+        middle = points[3 + 3 * edge]
+        diagram.text(apart(middle, centre, -22), f"edge {edge}", faint_grey, 11)
     splits = (2, 0, 1)
     lines = [
         "splits of edges 0, 1, 2:  2, 0, 1",
@@ -174,8 +174,7 @@ def lookup() -> Image:
     points = points_in(right)
     centre = right.mean(axis=0)
     for number in [0, 1, 2, *new_points(splits)]:
-        outward = points[number] - centre
-        diagram.text(points[number] + 13 * outward / np.linalg.norm(outward), str(number), size=11)
+        diagram.text(apart(points[number], centre, 13), str(number), size=11)
     return diagram.image()
 
 
