@@ -57,14 +57,10 @@ def shape(x: Array) -> Array:
     across, up, ahead = x.T
     nose = np.exp(-((across / 18.0) ** 2) - ((up + 25.0) / 25.0) ** 2)
     chin = np.exp(-(((up + 110.0) / 30.0) ** 2))
-    return np.stack(
-        [
-            across * (1.08 - 0.0006 * up) + 1.5 * nose,
-            up * 0.94 - 6.0 * chin,
-            ahead * 1.03 + 4.0 * nose * np.sign(ahead) - 3.0 * chin,
-        ],
-        axis=1,
-    )
+    broader = across * (1.08 - 0.0006 * up) + 1.5 * nose
+    shorter = up * 0.94 - 6.0 * chin
+    deeper = ahead * 1.03 + 4.0 * nose * np.sign(ahead) - 3.0 * chin
+    return np.stack([broader, shorter, deeper], axis=1)
 
 
 def user_head(level: int = 1) -> UserHead:

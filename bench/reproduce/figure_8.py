@@ -22,6 +22,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
 from risorius.geometry.arrays import Flags, Integers32
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import cross_products
 
 from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
@@ -69,7 +70,7 @@ def lines_along(scene: Scene) -> list[Points]:
     """For each triangle in a fold, a short line along the fold, slightly above the surface."""
     corners = scene.positions[scene.faces]
     directions, is_fold = find_folds(scene.faces, scene.positions)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross_products(scene.positions, scene.faces)
     unit = float(np.sqrt(np.median(np.linalg.norm(normals, axis=1))))
     normals = unit_vectors(normals)
     lift = 0.1  # height of lines over the surface, in mean edge lengths

@@ -57,29 +57,32 @@ class Maker:
 
 def beard(maker: Maker) -> tuple[Points, Triangles]:
     """A copy of the skin of chin and jaw, with long hairs below."""
-    points = maker.scene.rest_positions
+    _, height, depth = maker.scene.rest_positions.T
     lip = maker.landmark(57)[1]
     chin = maker.landmark(8)[1]
-    is_low = (points[:, 1] < lip - 4.0) & (points[:, 1] > chin - 5.0) & (points[:, 2] > 15.0)
-    shell, faces = maker.shell(is_low, 2.0)
+    is_low = (height < lip - 4.0) & (height > chin - 5.0)
+    shell, faces = maker.shell(is_low & (depth > 15.0), 2.0)
     shell[:, 1] -= 2.0 * np.maximum(chin + 5.0 - shell[:, 1], 0.0)
     return shell, faces
 
 
 def sideburns(maker: Maker) -> tuple[Points, Triangles]:
     """A full beard from the ears to the chin, without the lips."""
-    points = maker.scene.rest_positions
-    is_lip = (np.abs(points[:, 0]) < 27.0) & (points[:, 1] < maker.landmark(33)[1] - 4.0)
-    is_lip &= points[:, 1] > maker.landmark(57)[1] - 3.0
-    is_low = (points[:, 1] < maker.landmark(33)[1]) & (points[:, 2] > 0.0) & ~is_lip
-    return maker.shell(is_low & (points[:, 1] > maker.landmark(8)[1] - 8.0), 1.5)
+    across, height, depth = maker.scene.rest_positions.T
+    nose = maker.landmark(33)[1]
+    lip = maker.landmark(57)[1]
+    chin = maker.landmark(8)[1]
+    is_lip = (np.abs(across) < 27.0) & (height < nose - 4.0) & (height > lip - 3.0)
+    is_low = (height < nose) & (height > chin - 8.0)
+    return maker.shell(is_low & (depth > 0.0) & ~is_lip, 1.5)
 
 
 def bow_tie(maker: Maker) -> tuple[Points, Triangles]:
     """A knot that touches the throat below the chin, in front of the jaw."""
     points = maker.scene.rest_positions
     chin = maker.landmark(8)
-    throat = points[(points[:, 1] < chin[1] - 40.0) & (np.abs(points[:, 0]) < 15.0)]
+    is_in_middle = np.abs(points[:, 0]) < 15.0
+    throat = points[is_in_middle & (points[:, 1] < chin[1] - 40.0)]
     front = throat[throat[:, 2].argmax()]
     depth = chin[2] - front[2] + 20.0
     knot = trimesh.creation.box((30.0, 20.0, depth)).subdivide()
@@ -160,7 +163,8 @@ def test_single_teeth_belong_to_their_row(face):
     teeth = []
     roles = []
     for name, side in (("teeth_upper", 1.0), ("teeth_lower", -1.0)):
-        edge = rows[name][:, 1].min() if side > 0.0 else rows[name][:, 1].max()
+        heights = rows[name][:, 1]
+        edge = heights.min() if side > 0.0 else heights.max()
         for along in np.linspace(-1.0, 1.0, 10):
             back = 35.0 * along**2
             rise = 6.0 * along**2

@@ -96,7 +96,8 @@ def test_the_face_is_round_at_rest(face):
         mesh = refiner.refine(face.rest_positions)
         refine.check(refiner, mesh, face.rest_positions)
         outline = mesh.positions[abs(mesh.positions[:, 0]) < 1e-4, 1:].astype(np.float64)
-        crown = outline[outline[:, 0] > 0.65 * outline[:, 0].max() + 0.35 * outline[:, 0].min()]
+        height = outline[:, 0]
+        crown = outline[height > 0.65 * height.max() + 0.35 * height.min()]
         around = crown - [crown[:, 0].min(), crown[:, 1].mean()]
         crown = crown[np.argsort(np.arctan2(*around.T))]
         # The distance of each point from the line between its neighbours.

@@ -147,7 +147,8 @@ def test_a_shut_lid_loses_the_shade_of_its_fold(scene, wrinkling):
         projection = capture.camera.projection_matrix(1.0)
         matrix = np.array(view) @ np.array(projection)
         places = scene.positions[lids] @ matrix[:3] + matrix[3]
-        across, down = (240.0 * (1.0 + places[:, :2] / places[:, 3:] * (1.0, -1.0))).astype(int).T
+        on_screen = places[:, :2] / places[:, 3:] * (1.0, -1.0)  # -1 to 1, y downward
+        across, down = (240.0 * (1.0 + on_screen)).astype(int).T
 
         def mean_around(image):
             """Return the mean colour of 3 x 3 pixels around each vertex."""
@@ -159,7 +160,8 @@ def test_a_shut_lid_loses_the_shade_of_its_fold(scene, wrinkling):
         folded = mean_around(capture.draw_image())
     assert (shut > folded).all()
     assert (shut[:, 0] > 1.05 * folded[:, 0]).all()
-    redder = shut[:, 0] / shut[:, 2] - folded[:, 0] / folded[:, 2]
+    redness_of_shut = shut[:, 0] / shut[:, 2]
+    redder = redness_of_shut - folded[:, 0] / folded[:, 2]
     assert redder.min() > -0.01  # at inner corners, which are red in any case
     assert redder.mean() > 0.01
 

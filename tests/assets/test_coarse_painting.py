@@ -11,6 +11,7 @@ from risorius.assets.meshes import Mesh
 from risorius.assets.pictures import MeshPictures
 from risorius.bench.subjects import decimated
 from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import cross_products
 
 TRIANGLES = 900
 BROWS = slice(17, 27)
@@ -31,8 +32,8 @@ def differences(head, fitted, numbers):
     Returns the mean difference in colour [0 to 255], and the share of points with another segment.
     """
     corners = fitted.vertices[fitted.faces]
-    forward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0.0
-    triangles = np.repeat(np.flatnonzero(forward), 60)
+    is_forward = cross_products(fitted.vertices, fitted.faces)[:, 2] > 0.0
+    triangles = np.repeat(np.flatnonzero(is_forward), 60)
     weights = np.random.default_rng(0).dirichlet((1.0, 1.0, 1.0), len(triangles))
     points = np.einsum("nc,nci->ni", weights, corners[triangles])
     true = fitted.to_millimetres.points(head.vertices)

@@ -16,6 +16,7 @@ from risorius.assets.fitting.landmark_file import MisfitError
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
 from risorius.bench.gaps import eyeballs_of, lid_gaps
+from risorius.geometry.normals import cross_products
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.assets.checks import edge_faces
 from tests.heads import UserHead, closed, user_head, with_card
@@ -113,7 +114,8 @@ def test_the_inner_side_of_the_neck_does_not_show(fitted):
     vertices = fitted.vertices.copy()
     vertices[share < 1.0, 2] += 50.0
     corner = vertices[fitted.landmarks[48]]
-    is_cheek = (np.abs(vertices[:, 1] - corner[1]) < 10.0) & (vertices[:, 2] > corner[2] - 60.0)
+    is_level = np.abs(vertices[:, 1] - corner[1]) < 10.0
+    is_cheek = is_level & (vertices[:, 2] > corner[2] - 60.0)
     assert replace(fitted, vertices=vertices).fade()[is_cheek, 1].min() > 0.0
 
 
@@ -171,7 +173,8 @@ def test_texture_runs_evenly_beside_the_mouth(fitted):
     """
     corners = fitted.vertices[fitted.faces]
     uv = fitted.uv.astype(np.float64)[fitted.faces]
-    slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
+    sides = corners[:, 1:] - corners[:, :1]  # (F, 2, 3)
+    slopes = np.linalg.pinv(sides) @ (uv[:, 1:] - uv[:, :1])
     mouth = fitted.vertices[fitted.landmarks[[48, 54]]]
     away = norm(corners.mean(axis=1)[:, None] - mouth, axis=2).min(axis=1)
     beside = [pair for pair in edge_faces(fitted.faces).values() if len(pair) == 2]
@@ -248,9 +251,8 @@ def test_other_pieces_and_inside_out_meshes_do_no_harm(other):
     head = fit(mesh, (other.landmarks + 3).astype(np.int32))
     assert np.array_equal(head.file_vertices, np.arange(3, len(vertices) + 3))
     assert np.array_equal(np.sort(head.faces, axis=None), np.sort(faces, axis=None))
-    corners = head.vertices[head.faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    assert cross[(corners[:, :, 2] > 60.0).all(axis=1), 2].sum() > 0.0
+    is_front = (head.vertices[head.faces, 2] > 60.0).all(axis=1)
+    assert cross_products(head.vertices, head.faces)[is_front, 2].sum() > 0.0
 
 
 def _numbers(other, **places):

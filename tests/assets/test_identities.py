@@ -67,7 +67,8 @@ def test_the_border_of_a_thin_lower_lip_is_smooth(head):
     for ring in (4, 5, 6):
         left, right = (head.rings[f"mouth_{ring}_{side}"][8:] for side in ("left", "right"))
         border = change[np.r_[left, right[-2::-1]]]
-        assert norm(border[1:-1] - 0.5 * (border[2:] + border[:-2]), axis=1).max() < 0.58
+        between_neighbours = 0.5 * (border[2:] + border[:-2])
+        assert norm(border[1:-1] - between_neighbours, axis=1).max() < 0.58
 
 
 def test_few_persons_lie_far_from_the_mean():

@@ -12,6 +12,7 @@ from risorius import assets
 from risorius.assets import AssetError, loading
 from risorius.assets.fitting.painting import plain_picture
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.geometry.normals import cross_products
 from tests.tracked import tracked
 
 MOST_DATA = 3_600_000  # [bytes] of all data files; a quarter of it is the painted skin
@@ -26,8 +27,7 @@ def test_unknown_name_is_refused_with_the_known_ones():
 def test_plane_is_that_of_the_paper():
     """The plane of Figure 9: 7 x 11 cells, 154 triangles, flat, all facing the viewer."""
     plane = assets.load("plane")
-    corner = plane.vertices[plane.faces]
-    cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    cross = cross_products(plane.vertices, plane.faces)
     assert plane.vertices.shape == (96, 3)
     assert plane.faces.shape == (154, 3)
     assert np.allclose(plane.vertices.mean(axis=0), 0.0)

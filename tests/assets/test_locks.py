@@ -214,7 +214,8 @@ def test_single_hairs_cross_the_edges_of_bobs(number):
     lengths = np.linalg.norm(np.diff(ribbons[:, ::2], axis=1), axis=2).sum(axis=1)
     assert 20.0 < lengths.min() < lengths.max() < 60.0
     tips = ribbons[:, -1]
-    off = tips[:, 1] - layers[cKDTree(layers[:, -1]).query(tips)[1], -1, 1]
+    hem = layers[:, -1]
+    off = tips[:, 1] - hem[cKDTree(hem).query(tips)[1], 1]
     is_hem = off < 12.0
     assert is_hem.mean() > 0.2
     assert off[is_hem].std() > 3.0

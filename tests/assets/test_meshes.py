@@ -46,16 +46,17 @@ def test_a_ply_file_may_have_texture_coordinates(tmp_path, names):
     first, *second = names.split()
     at_vertices = f"property float {first}\nproperty float {second[0]}\n" if second else ""
     at_faces = "" if second else f"property list uchar float {first}\n"
+    lines = [
+        "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 4",
+        f"property float x\nproperty float y\nproperty float z\n{at_vertices}element face 2",
+        f"property list uchar int vertex_indices\n{at_faces}end_header",
+    ]
+    for place in ("0 0", "1 0", "1 1", "0 1"):
+        lines.append(f"{place} 0 {place}" if second else f"{place} 0")
+    for face in ("0 1 2", "0 2 3"):
+        lines.append(f"3 {face}" if second else f"3 {face} 6 0 0 1 0 1 1")
     path = tmp_path / "painted.ply"
-    path.write_text(
-        "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 4\n"
-        f"property float x\nproperty float y\nproperty float z\n{at_vertices}element face 2\n"
-        f"property list uchar int vertex_indices\n{at_faces}end_header\n"
-        + "".join(
-            f"{x} {y} 0{f' {x} {y}' * bool(second)}\n" for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))
-        )
-        + "".join(f"3 {face}{' 6 0 0 1 0 1 1' * (not second)}\n" for face in ("0 1 2", "0 2 3"))
-    )
+    path.write_text("\n".join(lines) + "\n")
     mesh = assets.read_mesh(path)
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
     assert len(mesh.vertices) == 4

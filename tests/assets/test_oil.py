@@ -13,7 +13,9 @@ def _at(head, oil, vertex):
     row = head.face_uv[head.faces == vertex][0]
     u, v = head.uv[row]
     size = len(oil)
-    return oil[min(int((1.0 - v) * size), size - 1), min(int(u * size), size - 1)] / 255.0
+    row = min(int((1.0 - v) * size), size - 1)
+    column = min(int(u * size), size - 1)
+    return oil[row, column] / 255.0
 
 
 @pytest.mark.parametrize("name", ["built-in", "coarse"])

@@ -126,11 +126,10 @@ def test_the_tongue_lies_against_the_lower_crowns(head):
     """
     tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
     for z in (80.0, 75.0, 68.0, 59.0):
-        crowns = teeth[
-            (np.abs(teeth[:, 2] - z) < 1.5) & (teeth[:, 1] > -75.0) & (teeth[:, 0] > 4.0)
-        ]
+        is_crown = (np.abs(teeth[:, 2] - z) < 1.5) & (teeth[:, 1] > -75.0)
+        inner = teeth[is_crown & (teeth[:, 0] > 4.0), 0].min()  # [mm]; of the left crowns
         beside = tongue[np.abs(tongue[:, 2] - z) < 1.5, 0].max()
-        assert crowns[:, 0].min() - 2.5 < beside < crowns[:, 0].min() + 1.0, z
+        assert inner - 2.5 < beside < inner + 1.0, z
 
 
 def test_parts_cost_no_more_than_they_must(head):
@@ -175,7 +174,8 @@ def test_lashes_are_curves(head):
         rings = lash[:-1].reshape(-1, 3, 3).mean(axis=1)
         ways = np.diff(np.vstack([rings, lash[-1]]), axis=0)
         ways /= norm(ways, axis=1, keepdims=True)
-        assert (ways[1:] * ways[:-1]).sum(axis=1).min() > np.cos(np.radians(30.0))
+        cosines = (ways[1:] * ways[:-1]).sum(axis=1)
+        assert cosines.min() > np.cos(np.radians(30.0))
 
 
 def test_lower_lashes_are_short_and_lean_outward(head):
@@ -188,10 +188,12 @@ def test_lower_lashes_are_short_and_lean_outward(head):
     root = lashes.vertices[lashes.roots[tips]]
     length = norm(tip - root, axis=1)
     is_lower = root[:, 1] < eye.centre[1]
-    assert 0.2 < length[is_lower].mean() / length[~is_lower].mean() < 0.5
+    is_upper = ~is_lower
+    assert 0.2 < length[is_lower].mean() / length[is_upper].mean() < 0.5
     is_outer = root[:, 0] > eye.centre[0]
     assert ((tip - root)[is_lower & is_outer, 0] > 0.0).mean() > 0.95
-    assert length[~is_lower & is_outer].mean() > 1.1 * length[~is_lower & ~is_outer].mean()
+    inner_length = length[is_upper & ~is_outer].mean()
+    assert length[is_upper & is_outer].mean() > 1.1 * inner_length
 
 
 def test_wet_edges_lie_between_lid_and_eyeball(head):
@@ -240,7 +242,8 @@ def test_upper_lid_throws_a_shadow_on_the_eye(head):
     local = ball.vertices - head.eyes[1].centre
     sclera = (local[:, 2] > 6.0) & (np.hypot(local[:, 0], local[:, 1]) > 6.8)
     brightness = ball.colours.mean(axis=1)
-    above, below = (brightness[sclera & (side * local[:, 1] > 6.0)].mean() for side in (1, -1))
+    above = brightness[sclera & (local[:, 1] > 6.0)].mean()
+    below = brightness[sclera & (local[:, 1] < -6.0)].mean()
     assert 0.5 * below < above < 0.75 * below
 
 

@@ -60,11 +60,12 @@ def test_no_two_triangles_share_a_texel(head):
         high = np.ceil(np.max([a, b, c], axis=0))
         x, y = np.meshgrid(*(np.arange(s, e) for s, e in zip(low, high, strict=True)))
         place = np.stack([x + 0.503, y + 0.507], axis=-1)  # off the lines of symmetry
-        turns = [
-            (q - p)[0] * (place - p)[..., 1] - (q - p)[1] * (place - p)[..., 0]
-            for p, q in ((a, b), (b, c), (c, a))
-        ]
-        covered[y.astype(int), x.astype(int)] += np.min(turns, axis=0) > 0.0
+        is_inside = np.ones(x.shape, bool)
+        for start, end in ((a, b), (b, c), (c, a)):
+            along_x, along_y = end - start
+            off_x, off_y = np.moveaxis(place - start, 2, 0)
+            is_inside &= along_x * off_y - along_y * off_x > 0.0
+        covered[y.astype(int), x.astype(int)] += is_inside
     assert covered.max() == 1
     assert covered.mean() > 0.5
 

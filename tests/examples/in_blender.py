@@ -20,9 +20,12 @@ def sheet():
     side = 14
     x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side))
     numbers = np.arange(side * side).reshape(side, side)
-    quads = [numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]]
+    first = numbers[:-1, :-1]
+    right = numbers[:-1, 1:]
+    opposite = numbers[1:, 1:]
+    below = numbers[1:, :-1]
     points = np.stack([x.ravel(), y.ravel(), np.zeros(side * side)], axis=1)
-    faces = np.stack(quads, axis=2).reshape(-1, 4)
+    faces = np.stack([first, right, opposite, below], axis=2).reshape(-1, 4)
     mesh.from_pydata(points.tolist(), [], faces.tolist())
     for name in ("skin", "cloth"):
         mesh.materials.append(bpy.data.materials.new(name))

@@ -9,6 +9,7 @@ instead of numbers, so nothing depends on an order:
 
 import math
 from collections import Counter, defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 Vector = tuple[float, float, float]
@@ -74,6 +75,14 @@ def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vect
 def edge_name(a: int, b: int) -> EdgeName:
     """The name of an edge, the same for both of its directions."""
     return (a, b) if a < b else (b, a)
+
+
+def splits_of(edges: Iterable[Iterable[int]], metric: Iterable[float]) -> dict[EdgeName, int]:
+    """Splits of edges by their names: one if the metric is above 0, two if it is above 1."""
+    splits = {}
+    for (a, b), needed in zip(edges, metric, strict=True):
+        splits[edge_name(int(a), int(b))] = int(needed > 0) + int(needed > 1)
+    return splits
 
 
 def edge_names(face: tuple[int, int, int]) -> list[EdgeName]:

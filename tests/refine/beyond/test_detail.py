@@ -167,10 +167,7 @@ def test_equals_plain_twin(mesh, seed, normals, blend):
     rest, faces = as_lists(mesh.vertices, mesh.faces)
     points, _ = as_lists(deformed, mesh.faces)
     needed = GivenMetric(metric)
-    splits = {
-        plain_twin.edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
-        for (a, b), n in zip(refiner.edges, needed.metric, strict=True)
-    }
+    splits = plain_twin.splits_of(refiner.edges, needed.metric)
     rules = detail_rules(rest, points, faces, seen)
     if normals == "refined":
         rules = RefinedNormals(rules, faces)

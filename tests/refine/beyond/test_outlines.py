@@ -15,6 +15,7 @@ from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
 from risorius.assets.loading import load
 from risorius.assets.meshes import Mesh
+from risorius.assets.topology import grid_faces
 from risorius.bench.subjects import decimated
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
@@ -31,18 +32,9 @@ def pit():
     angles = np.linspace(0.0, 2.0 * np.pi, POINT_COUNT, endpoint=False)
     ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(POINT_COUNT)])
     vertices = np.vstack([ring, 2.0 * ring, 0.9 * ring - [0.0, 0.0, 1.0]])
-    near = np.arange(POINT_COUNT)
-    far = (np.arange(POINT_COUNT) + 1) % POINT_COUNT
-    faces = [
-        np.column_stack(each)
-        for each in (
-            (near, near + POINT_COUNT, far + POINT_COUNT),
-            (near, far + POINT_COUNT, far),
-            (near + 2 * POINT_COUNT, near, far),
-            (near + 2 * POINT_COUNT, far, far + 2 * POINT_COUNT),
-        )
-    ]
-    return vertices, np.vstack(faces).astype(np.int32)
+    rim, outer, bottom = np.arange(3 * POINT_COUNT).reshape(3, -1)
+    faces = [grid_faces(np.array(rows), closed=True) for rows in ((rim, outer), (bottom, rim))]
+    return vertices, np.vstack(faces)
 
 
 def radii_between(refiner, positions, rim):

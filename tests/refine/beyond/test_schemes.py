@@ -19,7 +19,7 @@ from tests.refine.cases import (
     soups,
 )
 from tests.refine.plain_normals import RefinedNormals
-from tests.refine.plain_twin import PaperRules, edge_name
+from tests.refine.plain_twin import PaperRules, splits_of
 from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "cubic")
@@ -46,10 +46,7 @@ def twin_of(mesh, deformed, scheme, normals, blend, needed, edges):
     if normals == "refined":
         rules = RefinedNormals(rules, faces)
     geomorph = needed.geomorph(edges)
-    splits = {
-        edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
-        for (a, b), n in zip(edges, needed.metric, strict=True)
-    }
+    splits = splits_of(edges, needed.metric)
     return refine_plainly(points, faces, splits, geomorph=geomorph if blend else None, rules=rules)
 
 
