@@ -29,7 +29,6 @@ from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of
 from ..smooth import smooth_step
-from .lobes import rounded_lobes
 from .necks import below_jaw, evened_neck
 from .smiles import smiling
 from .sockets import without_ridges
@@ -103,7 +102,7 @@ def _form_of(known: Head, identity: Identity) -> _Form:
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = without_ridges(_resting_face(known, bent, eyes, identity))
     lid_fractions = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
-    vertices = rounded_lobes(lids_on_eyes(known, bent, eyes, lid_fractions))
+    vertices = lids_on_eyes(known, bent, eyes, lid_fractions)
     chin = vertices[known.anatomy["menton"]]
     vertices = _on_neck(evened_neck(vertices), chin, identity.sex)
     normals = cross_products(vertices, known.faces)
