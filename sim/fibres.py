@@ -194,11 +194,12 @@ def hang_on_fibre(
     bulge_spread = 0.3  # of the fibre's length (fitted)
     end = len(points) - 1
     reached = reached_along(points)
-    low = np.empty(3)
-    high = np.empty(3)
-    for axis in range(3):
-        low[axis] = points[:, axis].min()
-        high[axis] = points[:, axis].max()
+    low = points[0].copy()
+    high = points[0].copy()
+    for point in points:
+        for axis in range(3):
+            low[axis] = min(low[axis], point[axis])
+            high[axis] = max(high[axis], point[axis])
     farthest = cut_widths**2 * (hold.width**2 + hold.beyond**2)
     last = reached[end] - reached[end - 1]
     step_x, step_y, step_z = difference(points, end - 1, end)

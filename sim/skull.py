@@ -241,10 +241,12 @@ def moved_rigidly(motion: RigidMotion, point: Vector) -> Vector:
 def in_head(pose: RigidMotion, axes: Floats64, origin: Floats64, scale: float) -> Floats64:
     """A motion in the standard space as a (4, 4) matrix in head coordinates."""
     there = times(times(axes.T, pose.rotation), axes)
-    to = origin + scale * turned(axes.T, pose.shift) - turned(there, origin)
-    matrix = np.eye(4)
+    shift = turned(axes.T, pose.shift)
+    pivot = turned(there, origin)
+    matrix = np.zeros((4, 4))
+    matrix[3, 3] = 1.0
     for i in range(3):
-        matrix[i, 3] = to[i]
+        matrix[i, 3] = origin[i] + scale * shift[i] - pivot[i]
         for k in range(3):
             matrix[i, k] = there[i, k]
     return matrix

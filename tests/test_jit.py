@@ -100,6 +100,15 @@ def test_code_is_kept_and_never_old(package):
     assert package.run() == [PRINTED_RESULT]  # as after `git switch` there and back
 
 
+def test_code_is_kept_for_python_and_for_kernels(package):
+    """A kernel that Python and another kernel call is compiled for each, in either order."""
+    both = KERNEL_PROGRAM.replace("kernels import scale", "kernels import scale, factor")
+    outer, inner = COMPILED_LINES
+    assert package.run(f"{both}print(factor())") == [outer, inner, PRINTED_RESULT, inner, "2.0"]
+    assert package.run(f"{both}print(factor())") == [PRINTED_RESULT, "2.0"]
+    assert package.run(both.replace("print(", "print(factor(), ")) == [f"2.0 {PRINTED_RESULT}"]
+
+
 @pytest.mark.parametrize(
     "fault",
     [
@@ -158,6 +167,18 @@ def test_a_process_that_dies_while_it_compiles_stops_no_other(package):
     )
     assert package.run(f"{dying}\n{KERNEL_PROGRAM}") == COMPILED_LINES
     assert package.run() == [*COMPILED_LINES, PRINTED_RESULT]
+
+
+def test_a_kernel_that_does_not_compile_stops_no_other_process(package):
+    """Its lock ends with the error, so another process compiles the kernel at once."""
+    program = (
+        "import subprocess, sys, numba\n"
+        "from risorius.refine.kernels import scale\n"
+        "try: scale('no number')\n"
+        "except numba.errors.TypingError: pass\n"
+        f"subprocess.run([sys.executable, '-B', '-c', {KERNEL_PROGRAM!r}], timeout=60, check=True)"
+    )
+    assert package.run(program) == [COMPILED_LINES[0], PRINTED_RESULT]
 
 
 def test_functions_without_a_module_compile():

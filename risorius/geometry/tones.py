@@ -131,9 +131,10 @@ def _hair_of_row(
         within = one if on_scalp else beard[x]
         grey[x] = hairs.grey[1] + within * (hairs.grey[0] - hairs.grey[1])
     if len(grown.covered) == 0:
-        haired[:] = kept
-        covered[:] = np.float32(0.0)
-        shaded[:] = one
+        for x in range(len(haired)):  # slices take two seconds longer to compile
+            haired[x] = kept[x]
+            covered[x] = np.float32(0.0)
+            shaded[x] = one
         return
     cover = grown.covered[row]
     single = grown.hairs[row]
