@@ -65,13 +65,15 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
     arrays = read_arrays(head_file)
     names = arrays["anatomy_names"].tolist()
     rings = [name for name in arrays if name.startswith("ring_")]
+    eyes = []
+    for number, side in enumerate(("right", "left")):
+        radius, iris_radius = arrays["eye_radii"][number].tolist()
+        eyes.append(Eye(side, arrays["eye_centres"][number], radius, iris_radius))
     return Head(
         **{name: arrays[name] for name in ARRAY_NAMES},
         anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
         rings={name.removeprefix("ring_"): arrays[name] for name in rings},
-        eyes=tuple(
-            map(Eye, ("right", "left"), arrays["eye_centres"], *arrays["eye_radii"].T.tolist())
-        ),
+        eyes=tuple(eyes),
         parts=_parts(arrays),
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         file=head_file,

@@ -95,7 +95,8 @@ class SkinTexture(_Mipmaps):
 
     def _means(self, gl: moderngl.Context, oil: Image | None) -> moderngl.Texture:
         """Make a texture of two channels: the mean lightness around each texel, and its oil."""
-        level = min(max(max(self.size).bit_length() - _AROUND_BITS, 0), _AROUND_LEVEL)
+        bits = max(self.size).bit_length()
+        level = min(max(bits - _AROUND_BITS, 0), _AROUND_LEVEL)
         width, height = (max(each >> level, 1) for each in self.size)
         texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
         values = np.ones((height, width, 2), np.float16)

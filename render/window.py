@@ -52,7 +52,8 @@ class WindowSurface(Surface):
         self._new_texture: NewTexture = partial(clamped_texture, gl)
         if is_software(gl.info["GL_RENDERER"]):
             self._new_texture = window_textures(gl, glfw.get_proc_address)
-        super().__init__(gl, size := self.frame_size, samples, self._new_texture)
+        size = self.frame_size
+        super().__init__(gl, size, samples, self._new_texture)
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()

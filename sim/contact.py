@@ -194,15 +194,16 @@ def _evenly_held(
     a weak seal would draw those out of the line of their neighbours. own: stiffness for the area of
     each vertex, (V,).
     """
-    members = np.column_stack([vertex, beside])
+    members = np.column_stack([vertex, beside])  # (P, 3) the vertices of each pair
     shares = np.column_stack([np.ones(len(vertex)), weight, 1.0 - weight])
     strength = own[vertex]
     total = strength.sum()
     for _ in range(BALANCING_PASSES):
         load = np.zeros(len(own))
         np.add.at(load, members, strength[:, None] * shares)
-        fair = own[members] / np.maximum(load[members], 1e-12)
-        strength = strength * np.where(shares > 0.0, fair, np.inf).min(axis=1, initial=np.inf)
+        fair_factors = own[members] / np.maximum(load[members], 1e-12)
+        fair_factors[shares <= 0.0] = np.inf  # such a vertex does not hold the pair
+        strength = strength * fair_factors.min(axis=1, initial=np.inf)
         strength *= total / max(strength.sum(), 1e-12)
     return strength
 

@@ -49,10 +49,8 @@ def lid_side(surface: SkinSurface, landmarks: Floats64, side: Side) -> Floats64:
     lid_reach = 14.0  # mm from the lid landmarks
     near = np.minimum(upper, lower) < lid_reach
     certain_distance = 3.0  # mm by which one lid must be nearer; it is less only at the corners
-    balance = (lower - upper) / np.maximum(
-        np.abs(lower - upper).max(where=near, initial=certain_distance), certain_distance
-    )
-    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / certain_distance)
+    longer = lower - upper
+    ramp = np.sign(longer) * smoothstep(np.abs(longer) / certain_distance)
     vertices = np.concatenate([np.flatnonzero(near), surface.nearest(landmarks[[outer, inner]])])
     values = np.concatenate([ramp[near], [0.0, 0.0]])
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)

@@ -72,24 +72,24 @@ def graph_of(faces: Integers32, vertex_count: int) -> SkinGraph:
 
 @lru_cache(maxsize=4)
 def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
-    sides = np.sort(sides_of(np.frombuffer(faces, np.int32).reshape(-1, 3)), axis=1)
-    pairs, edge_of_side = different_pairs(sides)
+    """Find the edges, and an order of vertices; faces: bytes of triangles (F, 3), int32."""
+    triangles = np.frombuffer(faces, np.int32).reshape(-1, 3)
+    pairs, edge_of_side = different_pairs(np.sort(sides_of(triangles), axis=1))
     edges: Integers32 = pairs.astype(np.int32)
     neighbours = _edge_number_matrix(edges, np.zeros(0, np.int32), vertex_count)
-    pattern = sparse.csc_array((np.ones(neighbours.nnz), neighbours.indices, neighbours.indptr))
-    pattern.resize((vertex_count, vertex_count))
+    # Any matrix of this pattern gives the order, because the values do not matter.
+    parts = np.ones(neighbours.nnz), neighbours.indices, neighbours.indptr
+    pattern = sparse.csc_array(parts, shape=neighbours.shape)
     degrees = np.diff(neighbours.indptr)
-    # Only the order is used, and it does not depend on the values.
-    system = (sparse.diags_array(degrees + 1.0) - pattern).tocsc()
-    place = sparse_linalg.splu(
-        system,
+    factors = sparse_linalg.splu(
+        (sparse.diags_array(degrees + 1.0) - pattern).tocsc(),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
-    ).perm_c
+    )
+    place = factors.perm_c  # of each vertex in the order
     order = np.argsort(place).astype(np.int64)
-    diagonal = np.arange(vertex_count, dtype=np.int32)
-    ordered = _edge_number_matrix(place[edges], place[diagonal], vertex_count)
+    ordered = _edge_number_matrix(place[edges], place, vertex_count)
     return SkinGraph(read_only(edges), read_only(edge_of_side), order, neighbours, ordered)
 
 

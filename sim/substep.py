@@ -197,10 +197,10 @@ def accelerate(state: State) -> None:
 def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
     """Change velocities by the pull that the seal has at the end of the substep (implicit Euler).
 
-    The distance c of a pair grows at speed s; w is the inverse mass. An implicit spring gives s' =
-    (s - h k w c) / (1 + h^2 k w), which is stable for any stiffness k. The mass of a vertex in
-      several pairs is split among them (mass splitting, Tonge et al. 2012), so a weak seal pulls
-      with its full force for any number of pairs.
+    The distance c of a pair grows at speed s; w is the inverse mass. An implicit spring gives the
+    new speed (s - h k w c) / (1 + h^2 k w), which is stable for any stiffness k. The mass of a
+    vertex in several pairs is split among them (mass splitting, Tonge et al. 2012), so a weak seal
+    pulls with its full force for any number of pairs.
     """
     rest = skin.rest
     mass = skin.mass

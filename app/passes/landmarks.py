@@ -89,9 +89,9 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     head_axes = face.bone_transforms()["cranium"][:3, :2]
     corner_heights = face.annotation.inner_points(positions)[corner_numbers] @ head_axes[:, 1]
     seen = camera.project(paths.reshape(-1, 3)).reshape(*paths.shape[:3], 2)
-    upright = camera.rotation @ head_axes
-    aside = upright[:2, 0] / np.linalg.norm(upright[:2, 0])
-    up = upright[:2, 1] / np.linalg.norm(upright[:2, 1])
+    left_in_picture, up_in_picture = (camera.rotation @ head_axes)[:2].T
+    aside = left_in_picture / np.linalg.norm(left_in_picture)
+    up = up_in_picture / np.linalg.norm(up_in_picture)
     across = np.array([-up[1], up[0]])
     across *= np.sign(across @ aside) or 1.0  # to the subject's left
     turn = np.linspace(0.0, 0.5 * np.pi, paths.shape[1])[:, None]

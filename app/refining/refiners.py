@@ -101,12 +101,13 @@ def options_of(refiner: str, criterion: str) -> dict[str, refine.Option]:
     loaded.
     """
     found = {option.name: option for option in refine.parameters(refiner)}
-    if "criterion" in found:
-        for part in criterion.split("+"):
-            if part in refine.criteria.available():
-                for option in refine.criteria.options(part):
-                    if option.name not in found:
-                        found[f"{part}{OPTION_MARK}{option.name}"] = option
+    known = refine.criteria.available()
+    parts = criterion.split("+") if "criterion" in found else []
+    for part in parts:
+        own = refine.criteria.options(part) if part in known else ()
+        for option in own:
+            if option.name not in found:
+                found[f"{part}{OPTION_MARK}{option.name}"] = option
     return {name: option for name, option in found.items() if option.kind != "object"}
 
 

@@ -282,22 +282,36 @@ def displace_cubic(
             turn_a = times(-FULLNESS_FACTOR * dot(d, at_a), at_a)
             turn_b = times(-FULLNESS_FACTOR * dot(d, at_b), at_b)
         else:
-            p = tangents.beyond[e, 0]
-            q = tangents.beyond[e, 1]
-            length = length_of(d)
-            weight_a = length / max(length + length_of(between(positions, p, a)), SMALLEST_FLOAT)
-            weight_b = length / max(length + length_of(between(positions, b, q)), SMALLEST_FLOAT)
-            turn_a = less(times(weight_a, between(positions, p, b)), ONE, d)
-            turn_b = less(times(weight_b, between(positions, a, q)), ONE, d)
-            if p == a:
-                turn_a = times(-ONE, turn_b)
-            elif q == b:
-                turn_b = times(-ONE, turn_a)
+            turn_a, turn_b = turns_of_border(positions, a, b, tangents.beyond[e])
         write_cubic(displacements, np.uint32(3 * e), turn_a, turn_b)
         if tangents.covers[e]:
             at_a = row_of(steeper, np.uint32(ends[e, 0]))
             at_b = row_of(steeper, np.uint32(ends[e, 1]))
             remove_inward(displacements, np.uint32(3 * e), plus(at_a, at_b))
+
+
+@njit
+def turns_of_border(
+    positions: Floats64, a: np.uint32, b: np.uint32, beyond: Unsigned32
+) -> tuple[Vector, Vector]:
+    """Return the turns of the tangents at both ends of a border edge, for `write_cubic`.
+
+    A tangent runs between the neighbours of its end, and is as long as the edge allows. At the end
+    of a border it mirrors the other one. `beyond`: vertices before a and after b, shape (2,).
+    """
+    p = beyond[0]
+    q = beyond[1]
+    d = between(positions, a, b)
+    length = length_of(d)
+    weight_a = length / max(length + length_of(between(positions, p, a)), SMALLEST_FLOAT)
+    weight_b = length / max(length + length_of(between(positions, b, q)), SMALLEST_FLOAT)
+    turn_a = less(times(weight_a, between(positions, p, b)), ONE, d)
+    turn_b = less(times(weight_b, between(positions, a, q)), ONE, d)
+    if p == a:
+        turn_a = times(-ONE, turn_b)
+    elif q == b:
+        turn_b = times(-ONE, turn_a)
+    return turn_a, turn_b
 
 
 @njit

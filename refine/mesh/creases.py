@@ -22,6 +22,7 @@ import numpy as np
 
 from ...geometry.arrays import Flags, Floats64, Integers32, Unsigned32
 from ...geometry.directions import unit_vectors
+from ...geometry.normals import cross_products
 from ...geometry.read_only import read_only
 from ...jit import njit
 from .connectivity import Connectivity
@@ -81,11 +82,7 @@ def dihedral_angles(mesh: Connectivity, positions: Floats64) -> Floats64:
 
     It is 0 for all other edges, and beside triangles without an area.
     """
-    corners = positions[mesh.faces]
-    first_sides = corners[:, 1] - corners[:, 0]
-    last_sides = corners[:, 2] - corners[:, 0]
-    normals = np.cross(first_sides, last_sides)
-    normals = unit_vectors(normals, 1e-300)
+    normals = unit_vectors(cross_products(positions, mesh.faces), 1e-300)
     angles = np.zeros(len(mesh.edges))
     edges = np.flatnonzero(mesh.around.is_interior)
     first, second = normals[mesh.edge_sides[edges] >> 2].swapaxes(0, 1)
@@ -189,24 +186,27 @@ def _joined_corners(
             v = np.uint32(edges[e, i])
             if not on_crease[v]:
                 continue
-            here = 0
-            there = 0
-            for j in range(3):
-                if faces[t, j] == v:
-                    here = 3 * int(t) + j
-                if faces[u, j] == v:
-                    there = 3 * int(u) + j
-            while above[here] != here:
-                here = above[here]
-            while above[there] != there:
-                there = above[there]
-            if here < there:
-                above[there] = np.int32(here)
-            else:
-                above[here] = np.int32(there)
+            here = _root_of(above, _corner_at(faces, t, v))
+            there = _root_of(above, _corner_at(faces, u, v))
+            above[max(here, there)] = np.int32(min(here, there))
     for c in range(corner_count):
-        root = c
-        while above[root] != root:
-            root = above[root]
-        above[c] = np.int32(root)
+        above[c] = np.int32(_root_of(above, c))
     return above
+
+
+@njit
+def _corner_at(faces: Unsigned32, triangle: int, vertex: np.uint32) -> int:
+    """Return the last corner of a triangle at a vertex."""
+    found = 0
+    for k in range(3):
+        if faces[triangle, k] == vertex:
+            found = 3 * int(triangle) + k
+    return found
+
+
+@njit
+def _root_of(above: Integers32, corner: int) -> int:
+    """Follow `above` from a corner to the one that represents its sector so far."""
+    while above[corner] != corner:
+        corner = above[corner]
+    return corner

@@ -220,7 +220,10 @@ class ControlRows:
         action = session.scene.actions.get(row.names[-1], "")
         code, name = title_of(row.label, action)
         is_whole_face = row.label in session.scene.expressions
-        code, widest = (str(number or ""), "0 ") if is_whole_face else (code, code and "AU00  ")
+        widest = "AU00  " if code else ""
+        if is_whole_face:  # its code is the key that shows it
+            code = str(number or "")
+            widest = "0 "
         indent = imgui.calc_text_size(widest).x if name else 0.0
         place = imgui.get_cursor_screen_pos()
         wrapped = room - indent - padding.x
