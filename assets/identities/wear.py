@@ -9,13 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from ...geometry.arrays import Floats64
+from ...geometry.arrays import Floats64, Integers32
+from ..loading import load
 from ..model import GLASSES_NAME, Part
+from ..topology import quarter
 from .mask import MASK_COLOURS, mask
 from .person import Person
 from .shirts import in_shirt
@@ -72,48 +76,40 @@ def wearing(
     if cover is not None:
         sheet = mask(person, MASK_COLOURS[cover])
         parts.append(sheet)
-        nose = np.vstack([person.vertices, sheet.vertices])
+        nose = sheet.vertices.astype(np.float64)
     if frame is not None:
         parts.append(glasses(person, GLASSES_FRAMES[frame], nose))
     return replace(person, parts=tuple(parts))
 
 
 def glasses(person: Person, frame: GlassesFrame, nose: Floats64 | None = None) -> Part:
-    """Make glasses that fit a person.
+    """Make glasses that fit a person; beside a wide nose, the lenses are smaller.
 
-    nose: points on which the glasses rest [mm], (n, 3); None: the skin.
+    nose: points of more on which the glasses rest, such as a mask [mm], (n, 3); None: only skin.
     """
     skin = person.vertices
-    farthest = 9.0 if nose is None else 20.0  # [mm] that the glasses may move forward
-    nose = skin if nose is None else nose
-    eyes = {eye.name: eye for eye in person.eyes}
-    centre = 0.5 * (eyes["left"].centre + eyes["right"].centre)
-    apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
-    lens = np.array([1.1 * apart, centre[1] - 3.0])
-    # The left lens is computed; the right lens is its mirror image.
-    cornea = centre[2] + eyes["left"].radius
-    around = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
-    directions = np.stack([np.cos(around), np.sin(around)], axis=-1)
-    power = frame.squareness
-    reach = (np.abs(directions / [frame.half_width, frame.half_height]) ** power).sum(axis=1)
-    rim = lens + directions / reach[:, None] ** (1.0 / power)
-    inner = lens[0] - frame.half_width
-    across = np.linspace(-inner, inner, 13)
-    bow = 1.0 - (across / inner) ** 2
-    bridge = np.stack([across, lens[1] + 5.0 + 3.0 * bow], axis=-1)
-    front = [_in_front(each, lens, cornea) for each in (rim, rim * [-1.0, 1.0], bridge)]
-    front[2][:, 2] += 2.0 * bow
-    clearance = 0.5 * frame.thickness + 1.0  # [mm] between the frame and the skin
-    lacking = max(_depth_at(nose, each) + clearance for each in front)
-    forward = float(np.clip(lacking, -2.0, farthest))
-    moved = [each + np.array([0.0, 0.0, forward]) for each in front]
-    tubes = [tube(each, frame.thickness, closed=True) for each in moved[:2]]
-    tubes.append(tube(moved[2], frame.thickness, closed=False))
-    outermost = np.argmax(rim[:, 0] + 0.4 * rim[:, 1])  # outside, and high
-    left_hinge = moved[0][outermost]
+    farthest = 12.0 if nose is None else 20.0  # [mm] that the glasses may move forward
+    far = farthest - 6.0  # [mm]; smaller lenses are tried before the glasses move farther
+    rests = _points_on(skin)
+    rests = rests[rests[:, 2] > person.eyes[0].centre[2]]
+    if nose is not None:
+        rests = np.vstack([rests, nose])
+    tree = scipy.spatial.cKDTree(rests[:, :2])
+    for size in (1.0, 0.94, 0.88, 0.82, 0.76):
+        front = _front_of(person, frame, size)
+        clearance = 0.5 * frame.thickness + 1.0  # [mm] between the frame and the skin
+        depths = [clearance + _depth_at(rests, tree, path) for path in front]
+        lacking = max(depths)
+        if lacking <= max(far, depths[-1] + 1.0):  # where the bridge rests, size does not matter
+            break
+    forward = np.array([0.0, 0.0, float(np.clip(lacking, -2.0, farthest))])
+    rim = front.left + forward
+    tubes = [tube(each + forward, frame.thickness, closed=True) for each in front[:2]]
+    tubes.append(tube(front.bridge + forward, frame.thickness, closed=False))
+    hinge = rim[np.argmax(rim[:, 0] + 0.4 * rim[:, 1])]  # outside, and high
     for side, name in ((1.0, "left"), (-1.0, "right")):
         ear = skin[person.anatomy[f"tragion_{name}"]]
-        temple = _temple_path(skin, left_hinge * [side, 1.0, 1.0], ear, frame.thickness)
+        temple = _temple_path(skin, hinge * [side, 1.0, 1.0], ear, frame.thickness)
         tubes.append(tube(temple, 0.9 * frame.thickness, closed=False))
     surface = joined(tubes)
     return Part(
@@ -127,6 +123,54 @@ def glasses(person: Person, frame: GlassesFrame, nose: Floats64 | None = None) -
     )
 
 
+class _Front(NamedTuple):
+    """Paths of a frame without temples [mm], (n, 3): both rims, which are closed, and a bridge."""
+
+    left: Floats64
+    right: Floats64
+    bridge: Floats64
+
+
+def _front_of(person: Person, frame: GlassesFrame, size: float) -> _Front:
+    """Lay rims and bridge 11 mm before the eyes; lenses have `size` times the frame's size."""
+    eyes = {eye.name: eye for eye in person.eyes}
+    centre = 0.5 * (eyes["left"].centre + eyes["right"].centre)
+    apart = 0.5 * (eyes["left"].centre[0] - eyes["right"].centre[0])
+    half_width = size * frame.half_width
+    outward = 0.5 * (frame.half_width - half_width)  # wider bridges belong to smaller lenses
+    lens = np.array([1.1 * apart + outward, centre[1] - 3.0])
+    # The left lens is computed; the right lens is its mirror image.
+    cornea = centre[2] + eyes["left"].radius
+    around = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    directions = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    power = frame.squareness
+    reach = (np.abs(directions / [half_width, size * frame.half_height]) ** power).sum(axis=1)
+    rim = lens + directions / reach[:, None] ** (1.0 / power)
+    inner = lens[0] - half_width
+    across = np.linspace(-inner, inner, 13)
+    bow = 1.0 - (across / inner) ** 2
+    bridge = np.stack([across, lens[1] + 5.0 + 3.0 * bow], axis=-1)
+    front = _Front(*(_in_front(each, lens, cornea) for each in (rim, rim * [-1.0, 1.0], bridge)))
+    front.bridge[:, 2] += 2.0 * bow
+    return front
+
+
+def _points_on(skin: Floats64) -> Floats64:
+    """Return points on the triangles of a face, 2 mm apart on the nose [mm], (n, 3)."""
+    for edges in _halved_edges():
+        skin = np.vstack([skin, skin[edges].mean(axis=1)])
+    return skin
+
+
+@lru_cache(maxsize=1)
+def _halved_edges() -> tuple[Integers32, Integers32]:
+    """Return the edges of the built-in head, and those of its quartered triangles, (E, 2)."""
+    head = load("head")
+    first = quarter(head.faces, len(head.vertices))
+    second = quarter(first.faces, len(head.vertices) + len(first.edges))
+    return first.edges, second.edges
+
+
 def _in_front(points: Floats64, lens: Floats64, cornea: float) -> Floats64:
     """Lift points (x, y) of a frame, (n, 2), to its surface, which is curved and tilted, (n, 3).
 
@@ -138,13 +182,13 @@ def _in_front(points: Floats64, lens: Floats64, cornea: float) -> Floats64:
     return np.column_stack([points, cornea + vertex_distance - bend + lean])
 
 
-def _depth_at(skin: Floats64, points: Floats64) -> float:
+def _depth_at(skin: Floats64, tree: scipy.spatial.cKDTree, points: Floats64) -> float:
     """Return how far skin lies in front of points at most, along z [mm]; negative: behind.
 
-    skin: (V, 3). points: (n, 3).
+    skin: (V, 3). tree: of its x and y. points: (n, 3).
     """
-    beside = 4.0  # [mm] in x and y around a point, within which skin counts
-    near = scipy.spatial.cKDTree(skin[:, :2]).query_ball_point(points[:, :2], beside)
+    beside = 3.0  # [mm] in x and y around a point, within which skin counts
+    near = tree.query_ball_point(points[:, :2], beside)
     depths = []
     for found, point in zip(near, points, strict=True):
         if found:

@@ -9,10 +9,12 @@ from risorius.assets.identities import (
     GLASSES_FRAMES,
     SHIRT_COLOURS,
     make_person,
+    person_called,
     sample_identity,
     wearing,
 )
 from risorius.assets.identities.wear import GLASSES_NAME, glasses
+from risorius.geometry.rays import crossings
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +43,21 @@ def test_frames_lie_before_eyes_and_off_the_skin(people, name):
         near = cKDTree(person.vertices[:, :2]).query_ball_point(rims[:, :2], 3.0)
         for found, point in zip(near, rims, strict=True):
             assert not found or person.vertices[found, 2].max() < point[2]
+
+
+@pytest.mark.parametrize(("number", "name"), [(8, "oval"), (34, "rectangular")])
+def test_rims_do_not_pierce_wide_noses(number, name):
+    """Rims lie before the nose's triangles; they lay 2 to 6 mm in the nose."""
+    person = person_called(number)
+    points = glasses(person, GLASSES_FRAMES[name]).vertices.astype(float)
+    middle = points[np.abs(points[:, 0]) < 22.0]
+    rims = middle[middle[:, 2] > person.eyes[0].centre[2]]
+    corners = person.vertices[person.faces]
+    front = corners[(corners[..., 2] > 40.0).all(axis=1)]
+    for point in rims:
+        volume, u, v, ahead = crossings(point, np.array([0.0, 0.0, 1.0]), front)
+        is_met = (np.minimum(u, v) >= 0.0) & (u + v <= 1.0) & (volume != 0.0)
+        assert not (is_met & (ahead > 0.0)).any()
 
 
 def test_normals_point_out_of_the_frame(people):
