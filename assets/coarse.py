@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ..geometry.arrays import Floats64, Integers32
+from ..geometry.arrays import Floats32, Floats64, Integers32
 from .data_files import read_toml
 from .fitting.head import FittedHead
 from .fitting.warp import Similarity
@@ -48,7 +49,8 @@ def coarse_head() -> CoarseHead:
     Raises AssetError if a file is missing or broken.
     """
     known = load("head")
-    kept, faces = _layout(known)
+    layout = read_toml(LAYOUT_FILE)
+    kept, faces = _layout(known, layout["triangles"])
     number = np.full(len(known.vertices), -1, np.int32)
     number[kept] = np.arange(len(kept))
     # Its lids have no lashes, and no map shows form finer than its triangles.
@@ -62,7 +64,7 @@ def coarse_head() -> CoarseHead:
         bone_depth=known.bone_depth[kept],
         eyes=known.eyes,
         parts=parts,
-        uv=known.uv[kept],
+        uv=_texture_coordinates(known, layout["texture"], kept),
         face_uv=faces,
         albedo=known.albedo,
         wrinkles=still,
@@ -90,9 +92,16 @@ def _behind_lids(known: Head, part: Part) -> Part:
     return part
 
 
-def _layout(known: Head) -> tuple[Integers32, Integers32]:
+def _texture_coordinates(known: Head, texture: Mapping[str, int], kept: Integers32) -> Floats32:
+    """Return texture coordinates, (V, 2); texture: the table of the layout."""
+    rows = np.arange(len(known.vertices))
+    for side in (np.arange(len(rows)), known.mirror):
+        rows[side[texture["vertex"]]] = side[texture["shown"]]
+    return known.uv[rows[kept]]
+
+
+def _layout(known: Head, table: Mapping[str, Any]) -> tuple[Integers32, Integers32]:
     """Return the kept vertices of the built-in head, (V,), and triangles between them, (F, 3)."""
-    table = read_toml(LAYOUT_FILE)["triangles"]
     left = np.vstack([*table.values()]).astype(np.int32)
     right = known.mirror[left][:, ::-1]
     kept, corners = np.unique(np.vstack([left, right]), return_inverse=True)

@@ -37,6 +37,7 @@ from .tongue import Tongue, place_tongue
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper one turns inside out
 NECK_LENGTH = 45.0  # mm below the chin over which the head's turn fades, or the throat folds
+MOST_NECK_RISE = 0.3  # greatest slope of the base of the neck, which rises toward the nape
 MEETING_FRACTION = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 WHOLE_LIP_REACH = 7.0  # mm from the mouth line up to which skin follows fully
 LIP_END_REACH = 32.0  # mm from the mouth line beyond which skin stays
@@ -186,9 +187,20 @@ def _stiffnesses(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[
 
 
 def _head_weight(surface: SkinSurface, landmarks: Floats64) -> Floats64:
-    """Return how far skin follows the head's pose, shape (V, 1); 0 at the base of the neck."""
-    below = landmarks[8, 1] - surface.positions[:, 1]
-    head_weight: Floats64 = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
+    """Return how far skin follows the head's pose, shape (V, 1); 0 at the base of the neck.
+
+    Where the mesh ends at the nape, the base rises toward it, so that the end does not move.
+    """
+    chin = landmarks[8]
+    ears = landmarks[[0, 16], 2].mean()
+    below = chin[1] - surface.positions[:, 1]
+    behind = np.maximum(chin[2] - surface.positions[:, 2], 0.0)
+    border = surface.graph.border
+    is_nape = (below[border] > 0.0) & (surface.positions[border, 2] < ears)
+    nape = border[is_nape]
+    needed = (NECK_LENGTH - below[nape]) / np.maximum(behind[nape], 1.0)
+    rise = min(needed.max(initial=0.0), MOST_NECK_RISE)
+    head_weight: Floats64 = np.clip(1.0 - (below + rise * behind) / NECK_LENGTH, 0.0, 1.0)[:, None]
     return head_weight
 
 

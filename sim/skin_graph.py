@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy import sparse
@@ -30,6 +30,12 @@ class SkinGraph:
     order: Integers64  # (V,) of the vertices, for elimination
     neighbours: sparse.csr_array  # (V, V) number of the edge between two vertices
     ordered: sparse.csr_array  # the same in that order, and E + i on the diagonal at vertex i
+
+    @cached_property
+    def border(self) -> Integers32:
+        """The vertices at edges of one triangle only, shape (n,), rising."""
+        triangle_counts = np.bincount(self.edge_of_side, minlength=len(self.edges))
+        return np.unique(self.edges[triangle_counts == 1])
 
     def matrix(self, values: Floats64) -> sparse.csr_array:
         """Values of edges (E,) as a symmetric matrix (V, V)."""

@@ -7,6 +7,7 @@ import trimesh
 
 from risorius.assets.coarse import coarse_head
 from risorius.assets.data_files import read_image
+from risorius.assets.model import Segment
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products
@@ -98,3 +99,16 @@ def test_coarse_triangles_look_outward(coarse, head):
     is_before_ears = coarse.vertices[coarse.faces][:, :, 2].min(axis=1) > 10.0
     assert is_before_ears.sum() > 300
     assert agreeing[is_before_ears].min() > 0.0
+
+
+def test_no_triangle_of_the_neck_shows_hair(coarse):
+    """A triangle whose corners are skin of the neck shows no hair between them."""
+    is_nape = (coarse.vertices[:, 1] < -80.0) & (coarse.vertices[:, 2] < 0.0)
+    height, width = coarse.segments.shape
+    weights = np.random.default_rng(0).dirichlet([1.0, 1.0, 1.0], 40)
+    rows = np.flatnonzero(is_nape[coarse.faces].all(axis=1))
+    assert len(rows) >= 4
+    for corners in coarse.uv[coarse.face_uv[rows]]:
+        u, v = (weights @ corners).T
+        texels = ((1.0 - v) * height).astype(int), (u * width).astype(int)
+        assert not (coarse.segments[texels] == Segment.HAIR).any()

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from risorius import sim
+from risorius.assets.identities import make_person, sample_identity
+from risorius.sim.skin_graph import graph_of
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
 NOSE_TIP = 30
@@ -26,6 +28,24 @@ def test_head_turns_as_one(simulation, head, control, axis, sign):
     assert np.abs(simulation.positions[face] - carried[face]).max() < 1e-6
     watched = face[NOSE_TIP] if control != "head_roll" else face[27]
     assert sign * (simulation.positions - head.vertices)[watched, axis] > 5.0
+
+
+@pytest.mark.parametrize("number", [21, 777000145])
+def test_the_end_of_a_neck_stays_in_its_collar(number):
+    """Skin at the end of the neck follows the head by less than a twentieth, also at the nape.
+
+    It rose out of the collar of persons whose chins lie low, and showed the throat from behind.
+    """
+    person = make_person(sample_identity(number))
+    weights = sim.create(person).bones.head_weight
+    border = graph_of(person.faces, len(person.vertices)).border
+    lowest_of_face = person.vertices[person.landmarks[CHIN_LANDMARK], 1]
+    end = border[person.vertices[border, 1] < lowest_of_face - 10.0]
+    assert len(end) == 24
+    assert weights[end].max() < 0.05
+    hair_height = -90.0  # [mm]; hair at the nape ends above, and is fixed to the cranium
+    is_haired = (person.vertices[:, 1] > hair_height) & (person.vertices[:, 2] < -40.0)
+    assert weights[is_haired].min() > 0.85
 
 
 def test_lips_stay_closed_over_an_open_jaw(simulation, head):
