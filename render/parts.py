@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.arrays import Floats32, Floats64, Integers32
 from ..geometry.colour import to_linear
 from ..geometry.directions import unit_vectors
+from ..geometry.normals import cross_products
 from ..geometry.sides import different_pairs
 from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
@@ -72,8 +73,7 @@ class PartBuffers:
             least = part.striation[:, 5][part.faces].min(axis=1)
             self._throwing = _index_buffer(gl, part.faces[least > SHADING_DENSITY])
             # The inner side of hanging hair and flat hair do not hide the surface below.
-            a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
-            outward = unit_vectors(np.cross(b - a, c - a))[:, None]
+            outward = unit_vectors(cross_products(part.vertices, part.faces))[:, None]
             rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
             is_hiding = (least >= HIDING_DENSITY) & (rise > LEAST_RISE)
             self._hiding = _index_buffer(gl, part.faces[is_hiding])

@@ -17,6 +17,7 @@ from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLING_FRAMES, settled_positions
 from risorius.geometry.arrays import Flags
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.normals import cross_products
 
 Points = npt.NDArray[np.float64]
 
@@ -37,14 +38,13 @@ def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left
     centre = np.array([left + width / 2.0, CAPTION_HEIGHT + height / 2.0])
     pixels = 2.45  # pixels per millimetre
     middle = (0.0, -22.0)  # point of the face [mm] in the middle of a panel
-    places = centre + pixels * (mesh.positions[:, :2].astype(np.float64) - middle)
-    corners = mesh.positions[mesh.triangles].astype(np.float64)
-    a, b, c = corners.swapaxes(0, 1)
-    normals = unit_vectors(np.cross(b - a, c - a))
+    positions = mesh.positions.astype(np.float64)
+    normals = unit_vectors(cross_products(positions, mesh.triangles))
+    places = centre + pixels * (positions[:, :2] - middle)
     aside = np.abs(places[mesh.triangles, 0] - centre[0])
     is_inside = (aside < width / 2.0).all(axis=1)
     is_shown = is_inside & (normals[:, 2] > 0.0)
-    depth = corners[:, :, 2].mean(axis=1)
+    depth = positions[mesh.triangles, 2].mean(axis=1)
     split = (163, 204, 232)  # colour of parts of split triangles
     whole = (242, 240, 236)
     edge = (150, 154, 162)

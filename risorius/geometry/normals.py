@@ -11,7 +11,7 @@ from .arrays import Floats64
 from .directions import unit_vectors
 
 
-def cross_products(vertices: Floats64, faces: npt.NDArray[np.integer]) -> Floats64:
+def cross_products(vertices: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]) -> Floats64:
     """Face normals times twice the area, shape (F, 3)."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     return np.cross(b - a, c - a)
