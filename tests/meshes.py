@@ -25,6 +25,11 @@ def _mesh(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Mesh:
     return Mesh(np.array(vertices, dtype=np.float64), np.array(faces, dtype=np.int32))
 
 
+def flat_cross(u: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """The last coordinate of the vector products of u and v, from their first two ones."""
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+
 def triangle() -> Mesh:
     """One triangle: three border edges."""
     return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])

@@ -203,11 +203,9 @@ def is_sound(frame):
     known = {*ARKIT_SHAPES, *VISEME_NAMES, *ANGLE_NAMES}
     shapes = [value for name, value in frame.channels.items() if name not in ANGLE_NAMES]
     angles = [abs(value) for name, value in frame.channels.items() if name in ANGLE_NAMES]
-    return (
-        frame.channels.keys() <= known
-        and all(0.0 <= value <= 1.0 for value in shapes)
-        and all(value <= 180.0 for value in angles)
-    )
+    are_shapes_sound = all(0.0 <= value <= 1.0 for value in shapes)
+    are_angles_sound = all(value <= 180.0 for value in angles)
+    return frame.channels.keys() <= known and are_shapes_sound and are_angles_sound
 
 
 @pytest.mark.parametrize("kind", PROTOCOL_NAMES)

@@ -38,9 +38,8 @@ def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     coat = rows & (beside > 3.0) & (beside < 8.0)
     assert tongue.colours[groove].mean() < 0.88 * tongue.colours[coat].mean()
     edge = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] < 0.2)
-    redness = [
-        (each[:, 0] / each[:, 1]).mean() for each in (tongue.colours[edge], tongue.colours[coat])
-    ]
+    ratios = tongue.colours[:, 0] / tongue.colours[:, 1]
+    redness = [ratios[edge].mean(), ratios[coat].mean()]
     assert redness[0] > 1.15 * redness[1]
     assert tongue.shine > rest.shine
     assert (tongue.unlit[:, 0] / tongue.unlit[:, 1]).mean() < 1.8  # not too pink

@@ -21,7 +21,7 @@ from risorius.bench.subjects import decimated
 from risorius.geometry.normals import cross_products, points_on_triangles, vertex_normals
 from tests.assets.checks import check_part
 from tests.heads import UserHead, shape
-from tests.meshes import ball
+from tests.meshes import ball, flat_cross
 
 Array = npt.NDArray[np.float64]
 EYE_DISTANCE = 25.0  # [mm] around an eye, for the eye's parts
@@ -42,7 +42,7 @@ def _across(edge):
     """Places (m, 2) of lines of sight along z through a hole with this edge (n, 3)."""
     middle = edge.mean(axis=0)
     first, second = (each - middle for each in (edge, np.roll(edge, 1, axis=0)))
-    enters = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0.0  # faces the viewer
+    enters = flat_cross(first, second) > 0.0  # faces the viewer
     share = np.linspace(0.0, 1.0, SIDES, endpoint=False)[:, None, None]
     toward = np.linspace(0.0, 0.99, RINGS)[:, None, None]
     rim = ((1.0 - share) * first[enters] + share * second[enters]).reshape(-1, 3)
@@ -54,11 +54,11 @@ def _meets(points, triangles):
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
     u = b - a
     v = c - a
-    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area = flat_cross(u, v)
     a, u, v, area = (each[area > 0.0] for each in (a, u, v, area))
     to = points[:, None] - a
-    of_b = (to[..., 0] * v[:, 1] - to[..., 1] * v[:, 0]) / area
-    of_c = (u[:, 0] * to[..., 1] - u[:, 1] * to[..., 0]) / area
+    of_b = flat_cross(to, v) / area
+    of_c = flat_cross(u, to) / area
     return ((of_b >= -1e-6) & (of_c >= -1e-6) & (of_b + of_c <= 1.0 + 1e-6)).any(axis=1)
 
 

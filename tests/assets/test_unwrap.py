@@ -3,13 +3,15 @@
 import numpy as np
 from numpy.linalg import norm
 
+from tests.meshes import flat_cross
+
 TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids, hidden at rest
 
 
 def signed_areas(flat, faces):
     """Twice the area of flat triangles, positive for counter-clockwise ones."""
     first, second = (flat[faces[:, k]] - flat[faces[:, 0]] for k in (1, 2))
-    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    return flat_cross(first, second)
 
 
 def stretches(head):

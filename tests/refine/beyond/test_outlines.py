@@ -22,7 +22,7 @@ from risorius.geometry.normals import cross_products
 from risorius.geometry.sides import edges_of
 
 from ...heads import UserHead
-from ...meshes import open_grid
+from ...meshes import flat_cross, open_grid
 
 POINT_COUNT = 9
 
@@ -83,12 +83,12 @@ def _is_hidden(points, triangles):
     first, second, third = triangles.transpose(1, 0, 2)
     u = second - first
     v = third - first
-    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area = flat_cross(u, v)
     has_area = np.abs(area) > 1e-9
     first, u, v, area = (each[has_area] for each in (first, u, v, area))
     to = points[:, None] - first
-    of_second = (to[..., 0] * v[:, 1] - to[..., 1] * v[:, 0]) / area
-    of_third = (u[:, 0] * to[..., 1] - u[:, 1] * to[..., 0]) / area
+    of_second = flat_cross(to, v) / area
+    of_third = flat_cross(u, to) / area
     is_across = (of_second >= 0.0) & (of_third >= 0.0) & (of_second + of_third <= 1.0)
     depth = to[..., 2] - of_second * u[:, 2] - of_third * v[:, 2]
     return (is_across & (depth < -0.5)).any(axis=1)
