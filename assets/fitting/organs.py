@@ -47,10 +47,15 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = float(np.sqrt(scale))
         away = fitted.vertices - centre
         outward = (fitted.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
-        from_landmarks, _ = scipy.spatial.cKDTree(target).query(fitted.vertices)
+        near_lids = scipy.spatial.cKDTree(target)
+        from_landmarks, _ = near_lids.query(fitted.vertices)
         # Skin that faces the ball is the wall of a socket, not a lid. A socket may be too narrow.
         is_lid = (outward > -0.5) & (from_landmarks < lid_depth)
-        between = _points_between(fitted, is_lid, centre)
+        corners = is_lid[fitted.faces]
+        between = _points_between(fitted, corners.all(axis=1), centre)
+        # On heads of few triangles, some reach from a lid to the brow.
+        partly = _points_between(fitted, corners.any(axis=1), centre)
+        partly = partly[near_lids.query(partly)[0] < lid_depth]
         skin = np.vstack([target, fitted.vertices[is_lid], between])
         iris = scale * eye.iris_radius
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
@@ -65,6 +70,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         iris = min(iris, most_iris * radius)
         if own is None:
             centre[2] += _forward_clearance(centre, radius + LID_CLEARANCE, skin)
+            centre[2] += min(_forward_clearance(centre, radius, partly), 0.0)
         eyes.append(Eye(eye.name, centre, radius, iris))
     return tuple(eyes)
 
@@ -82,13 +88,14 @@ def _within_lids(centre: Floats64, radius: float, lids: Floats64) -> float:
     return float(np.clip(nearest - clearance, (1.0 - most_shrunk) * radius, radius))
 
 
-def _points_between(fitted: FittedSkin, is_lid: Flags, centre: Floats64) -> Floats64:
-    """Return points all over the long triangles on the outer sides of lids [mm], (n, 3).
+def _points_between(fitted: FittedSkin, is_chosen: Flags, centre: Floats64) -> Floats64:
+    """Return points all over the long ones of chosen triangles, on their outer sides [mm], (n, 3).
 
     A long flat triangle is deeper in its middle than at its corners, and the ball would pierce it.
-    is_lid: flags of the skin's vertices, (V,). centre: an estimate of the ball's centre, (3,).
+
+    is_chosen: flags of the skin's triangles, (F,). centre: an estimate of the ball's centre, (3,).
     """
-    faces = fitted.faces[is_lid[fitted.faces].all(axis=1)]
+    faces = fitted.faces[is_chosen]
     corners = fitted.vertices[faces]
     lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     long_edge = 4.0  # [mm]; the middle of such an edge is 0.2 mm deeper than its ends

@@ -129,6 +129,26 @@ def test_eyeballs_lie_behind_flat_triangles_of_lids(tmp_path):
         assert (eye.radius - norm(lids - eye.centre, axis=1)).max() < 2.5
 
 
+def test_eyeballs_lie_behind_triangles_from_lid_to_brow():
+    """On a head of 500 triangles, no skin near the landmarks of an eye lies in the eyeball.
+
+    It was 1.7 mm deep, because triangles with a corner at the brow did not count as lids.
+    """
+    head = assets.load("head")
+    points, faces = decimated(head.vertices, head.faces, 500)
+    landmarks = head.vertices[head.landmarks]
+    normals = vertex_normals(points, faces)
+    skin = FittedSkin(points, normals, faces, landmarks, np.zeros(len(points)), ())
+    crosses = cross_products(points, faces)
+    for eye in place_eyes(head, skin):
+        away = points[faces].mean(axis=1) - eye.centre
+        is_outer = (crosses * away).sum(axis=1) > 0.0
+        lids = points_on_triangles(points, faces[is_outer])
+        around = slice(36, 42) if eye.name == "right" else slice(42, 48)
+        is_near = cKDTree(landmarks[around]).query(lids)[0] < 5.0
+        assert norm(lids[is_near] - eye.centre, axis=1).min() > eye.radius - 1e-6
+
+
 def _ball(centre, radius):
     """Vertices and triangles of a sphere."""
     unit = ball(2)
