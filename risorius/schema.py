@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import difflib
 import json
+import marshal
 import reprlib
 import tomllib
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from pydantic import (
@@ -205,6 +206,25 @@ def read(
         return cast(Read, _adapter(kind).validate_python(document))
     except ValidationError as problem:
         raise error(_line(where, problem.errors(include_url=False)[0])) from None
+
+
+def read_once(kind: type[Read], document: Any, where: str) -> Read:
+    """Return what `read` returns; equal documents share one record, which nobody may change.
+
+    Persons share tables, which take milliseconds to check.
+    """
+    try:
+        content = marshal.dumps(document, 2)  # version 2 does not depend on counts of references
+    except ValueError:  # not the plain types of files
+        return read(kind, document, where)
+    return cast(Read, _remembered(kind, content, where))
+
+
+def _read_content(kind: type[Any], content: bytes, where: str) -> Any:
+    return read(kind, marshal.loads(content), where)
+
+
+_remembered: Callable[..., Any] = lru_cache(32)(_read_content)
 
 
 def read_valid_entries(kind: type[Read], document: Any) -> tuple[Read, list[str]]:

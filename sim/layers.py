@@ -56,7 +56,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from ..geometry.read_only import read_only
-from ..schema import OneOf, Record, Rest, Within, question, read
+from ..schema import OneOf, Record, Rest, Within, question, read_once
 from .checked import several
 
 BOTH_SIDES = "Both sides"  # title of the layer in every face with paired muscles
@@ -115,7 +115,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     for layer in several("head.layers", given, ("title", "source", "rows")):
         below = dict(reader.weights)  # the controls that a row of this layer may name
         names: list[str] = []
-        for name, row in read(dict[str, _Row], layer.rows, str(layer.source)).items():
+        for name, row in read_once(dict[str, _Row], layer.rows, str(layer.source)).items():
             names += reader.add(f"{layer.source}, '{name}'", name, row, below)
         reader.groups[str(layer.title)] = tuple(names)
     weights = list(reader.weights.items())[len(lowest) :]

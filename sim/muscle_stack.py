@@ -60,10 +60,15 @@ def stack_muscles(
     points = np.array([line.points for line in lines]).reshape(-1, FIBRE_POINTS, 3)
     normals, sides = over_skin(points.reshape(-1, 3), surface, surface.normals, lip_side)
     owners = np.repeat(order, [len(placed[n].lines) for n in order])
+    lying: dict[str, list[int]] = {}  # the muscles on each muscle
+    for m in order:
+        for beneath in set(placed[m].muscle.lies_on):
+            lying.setdefault(beneath, []).append(m)
     first = 0
     found = list[_Carried]()
     for n in order:
-        above = [m for m in order if _is_under(placed[n], placed[m])]
+        above = lying.get(placed[n].muscle.name, [])
+        above = [m for m in above if not _are_opposite(placed[n], placed[m])]
         if above:
             # Points are numbered through all lines, FIBRE_POINTS of each line.
             on = np.flatnonzero(np.repeat(np.isin(owners, above), FIBRE_POINTS))
@@ -73,10 +78,9 @@ def stack_muscles(
     return _stack_of(found, len(lines))
 
 
-def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
-    """Return whether one muscle lies on the other; muscles of pairs only on the same side."""
-    is_beside = below.muscle.pair and above.muscle.pair and below.side is not above.side
-    return below.muscle.name in above.muscle.lies_on and not is_beside
+def _are_opposite(below: PlacedMuscle, above: PlacedMuscle) -> bool:
+    """Return whether both muscles are of pairs, on opposite sides."""
+    return below.muscle.pair and above.muscle.pair and below.side is not above.side
 
 
 class _Carried(NamedTuple):

@@ -39,7 +39,7 @@ from ..schema import (
     Within,
     called,
     question,
-    read,
+    read_once,
 )
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 
@@ -309,4 +309,4 @@ class Rig(Record):
 
 def read_rig(document: Mapping[str, Any]) -> Rig:
     """Read a rig from the parsed rig file; raises ValueError with the wrong muscle and key."""
-    return read(Rig, document, "rig")
+    return read_once(Rig, document, "rig")

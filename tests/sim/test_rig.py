@@ -132,6 +132,15 @@ def test_each_mistake_is_named(change, message):
         read_rig(document)
 
 
+def test_persons_share_a_rig():
+    """Equal documents give one rig; True, which equals 1 in Python, is refused also after 1."""
+    document = {**_document(), "tissue": {"tangential": 1}}
+    assert read_rig(document) is read_rig(copy.deepcopy(document))
+    document["tissue"]["tangential"] = True
+    with pytest.raises(ValueError, match="'tangential': was True"):
+        read_rig(document)
+
+
 def test_built_in_rig_is_complete(head):
     """The face has the muscles of textbooks; every real muscle has its action unit."""
     rig = read_rig(head.rig)
