@@ -21,7 +21,7 @@ GLABELLA_REACH = 0.0, 50.0  # [mm]; y of the first and the last sample
 FEET_REACH = 5.0, 45.0  # [mm]; distances of the first and the last sample from the fan's hub
 FAN_ANGLES = {  # smallest and greatest angle of crow's feet above the horizontal [rad]
     Fan.WHOLE: (-0.95, 0.5),
-    Fan.LOWER: (-0.95, -0.1),
+    Fan.LOWER: (-0.75, 0.1),
     Fan.CENTRAL: (-0.45, 0.3),
     Fan.UPPER: (-0.15, 0.55),
 }
@@ -63,8 +63,8 @@ def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[
         place += 0.17 * spread * random.uniform(-1.0, 1.0)
         own = place + course + 0.45 * _random_curve(26.0, x, random)
         shown = _line_strength(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
-        waves = (0.12 + 0.4 * lines.broken) * _random_curve(34.0, x, random)
-        whole = smooth_step(0.0, 1.0, 1.0 - 0.45 * lines.broken + waves)
+        waves = (0.12 + 0.28 * lines.broken) * _random_curve(44.0, x, random)
+        whole = smooth_step(0.0, 1.0, 1.0 - 0.36 * lines.broken + waves)
         right_end, left_end = random.uniform(34.0, 54.0, 2)  # [mm] from the midline
         fading = 14.0  # [mm] over which a line fades at its ends
         reach = smooth_step(-right_end, -right_end + fading, x)
@@ -127,7 +127,7 @@ def crows_feet(lines: ExpressionLines, random: np.random.Generator) -> list[Furr
     radius = _sample_coordinates(FEET_REACH)
     low, high = FAN_ANGLES[lines.fan]
     wide = (high - low) / lines.feet
-    begin = 13.0  # [mm] behind the corner of the lids
+    begin = 11.0  # [mm] from the hub, some millimetres behind the corner of the lids
     found = []
     for number in range(lines.feet):
         angle = low + (number + 0.5 + 0.25 * random.uniform(-1.0, 1.0)) * wide

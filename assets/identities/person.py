@@ -240,7 +240,7 @@ def _own_places(known: Head, identity: Identity) -> Floats64:
     begins = random.uniform(0.0, 2.0 * np.pi, wave_count)
     halves = np.abs(known.vertices * [1.0, 0.0, 0.0]) + known.vertices * [0.0, 1.0, 1.0]
     waves = np.cos(halves @ wave_vectors + begins).sum(axis=1) / np.sqrt(0.5 * wave_count)
-    return np.asarray(np.clip(1.0 + 0.55 * waves, 0.15, 1.9))
+    return np.asarray(np.clip(1.0 + 0.55 * waves, 0.15, 1.5))
 
 
 def _named_vertices(known: Head) -> Integers32:
