@@ -100,6 +100,7 @@ def test_code_is_kept_and_never_old(package):
     assert package.run() == [PRINTED_RESULT]  # as after `git switch` there and back
 
 
+@pytest.mark.slow
 def test_code_is_kept_for_python_and_for_kernels(package):
     """A kernel that Python and another kernel call is compiled for each, in either order."""
     both = KERNEL_PROGRAM.replace("kernels import scale", "kernels import scale, factor")
