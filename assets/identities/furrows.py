@@ -135,12 +135,12 @@ def crows_feet(lines: ExpressionLines, random: np.random.Generator) -> list[Furr
         own += 0.45 * _random_curve(16.0, radius, random) / radius
         start = begin + random.uniform(0.0, 3.0)
         end = begin + lines.reach * random.uniform(0.55, 1.0)
-        shown = smooth_step(start - 2.0, start + 2.0, radius)
-        shown = shown * smooth_step(end, start + 0.55 * (end - start), radius)
-        depth = 0.36 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
+        shown = smooth_step(start - 2.0, start + 5.0, radius)
+        shown = shown * smooth_step(end, start + 0.4 * (end - start), radius)
+        depth = 0.3 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
         depth *= 1.0 + 0.15 * _random_curve(9.0, radius, random)
         roll = float(np.clip(10.0 * wide, 1.4, 2.4))
-        found.append(FurrowLine(course=own, depth=depth, width=1.05, roll=roll, swelling=1.2))
+        found.append(FurrowLine(course=own, depth=depth, width=1.2, roll=roll, swelling=0.8))
         if random.random() < 0.3:
             fork = start + random.uniform(4.0, 8.0)
             away = random.choice([-1.0, 1.0]) * 0.018 * np.maximum(radius - fork, 0.0)

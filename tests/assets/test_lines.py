@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 
 from risorius.assets.identities import Sex, coloured, make_person, sample_identity
 from risorius.assets.identities.furrow_map import _line_regions, shared_map, with_lines
+from risorius.assets.identities.furrows import SAMPLE_SPACING, crows_feet
 from risorius.assets.identities.lines import ExpressionLines, Fan, Spread
 from risorius.assets.loading import load
 
@@ -138,7 +139,7 @@ def test_spread_fan_and_reach_are_where_the_record_says():
     rows, columns = about("exocanthion_left", 110, 120)
     upper, lower = (drawn(fan=each)[rows, columns, 2] for each in (Fan.UPPER, Fan.LOWER))
     assert upper[:110].sum() > 2.0 * lower[:110].sum()
-    assert lower[110:].sum() > 2.0 * upper[110:].sum()
+    assert lower[110:].sum() > 1.5 * upper[110:].sum()  # lower fans reach 6 degrees up
     short, long = (drawn(reach=reach)[rows, columns, 2].sum() for reach in (9.0, 20.0))
     assert long > 1.3 * short
 
@@ -185,6 +186,16 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
     bare = replace(person, identity=replace(person.identity, lines=None))
     unlined = coloured(bare, angle=40.0).wrinkles.map[4 * below.start :]
     assert_array_equal(unlined, bare.wrinkles.map[4 * below.start :])
+
+
+def test_feet_of_crows_begin_and_end_gradually():
+    """Most crow's feet change by less than 0.32 of their depth in a millimetre: no scratches."""
+    changes = []
+    for seed in range(20):
+        for line in crows_feet(PLAIN_LINES, np.random.default_rng(seed)):
+            steps = np.abs(np.diff(line.depth)) / SAMPLE_SPACING
+            changes.append(steps.max() / line.depth.max())
+    assert np.median(changes) < 0.32
 
 
 def test_lines_between_the_brows_are_a_pair():
