@@ -20,6 +20,7 @@ SURFACE_KIND = 0
 HAIR_KIND = 1
 TRIANGLE_KIND = 2  # each triangle counts as a separate surface
 _LEAST_FACING = 0.05  # as in shell_layers.glsl
+_FRAYED_EDGE = 0.2  # as in shell_layers.glsl
 _NEIGHBOUR_OFFSETS = np.array(
     [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)]
 )  # offsets to a pixel and neighbours
@@ -130,8 +131,9 @@ def rasterise(
 
     corners: homogeneous coordinates (V, 4). Divided by the last column, the others are x and y
         [pixels of the area], and depth, 0 to 1.
-    values: two numbers per vertex, (V, 2). For HAIR_KIND: density, and cosine between normal and
-        line of sight. For other kinds: y of the normal, and distance from a cut, positive in front.
+    values: three numbers per vertex, (V, 3). For HAIR_KIND: density, cosine between normal and
+        line of sight, and how far hair frays. For other kinds: y of the normal, distance from a
+        cut, positive in front, and 0.
     kind: SURFACE_KIND, HAIR_KIND or TRIANGLE_KIND.
     numbers: the uniform `numbers` of surface_number.glsl.
     has_back: whether back faces are visible, too.
@@ -191,8 +193,8 @@ def _rasterise_side(
                         continue
                     if number < 0.0:
                         # Drivers evaluate the number at the pixel's centre, for all its samples.
-                        one, two = _interpolated_pair(values, triangles, t, edges, x + 0.5, y + 0.5)
-                        number = _surface_number(kind, numbers, is_front, t, one, two)
+                        found = _interpolated(values, triangles, t, edges, x + 0.5, y + 0.5)
+                        number = _surface_number(kind, numbers, is_front, t, found)
                         if number < 0.0:
                             break
                     depths[n, s] = depth
@@ -297,17 +299,18 @@ def _is_inside(edges: _Edges, sign: float, x: float, y: float) -> bool:
 
 
 @njit
-def _interpolated_pair(
+def _interpolated(
     values: Floats64, triangles: Integers32, triangle: int, edges: _Edges, x: float, y: float
-) -> tuple[float, float]:
-    """Interpolate the two values of a triangle's corners at a point."""
-    whole = one = two = 0.0
+) -> tuple[float, float, float]:
+    """Interpolate the three values of a triangle's corners at a point."""
+    whole = one = two = three = 0.0
     for k in range(3):
         weight = _at(edges[k], x, y)
         whole += weight
         one += weight * values[triangles[triangle, k], 0]
         two += weight * values[triangles[triangle, k], 1]
-    return one / whole, two / whole
+        three += weight * values[triangles[triangle, k], 2]
+    return one / whole, two / whole, three / whole
 
 
 @njit
@@ -316,17 +319,18 @@ def _surface_number(
     numbers: tuple[float, float, float],
     is_front: bool,
     triangle: int,
-    one: float,
-    two: float,
+    found: tuple[float, float, float],
 ) -> float:
     """Return the surface number (surface_number.glsl); negative where there is no surface.
 
-    one, two: interpolated `values` of `rasterise`.
+    found: interpolated `values` of `rasterise`.
     """
+    one, two, three = found
     if kind == HAIR_KIND:
         # As in shell_layers.glsl.
-        has_edge = one >= 0.9 * min(max(2.5 * two, _LEAST_FACING), 1.0)
-        return numbers[0] if has_edge else -1.0
+        has_edge = one >= 0.9 * min(max(2.5 * abs(two), _LEAST_FACING), 1.0)
+        frays = max(two, 0.0) < _FRAYED_EDGE * three
+        return numbers[0] if has_edge and not frays else -1.0
     if not is_front:
         return numbers[2] if two >= 0.0 else -1.0
     if kind == TRIANGLE_KIND:

@@ -32,7 +32,6 @@ from .translucency import NO_CUT, SUNK_DEPTH, in_view
 
 _MEAN_PLACE = 0.6  # MEAN of shell_layers.glsl
 _LOWEST_PLACE = 0.15  # LOWEST of shell_layers.glsl
-_FRAYED_EDGE = 0.2  # FRAYED_EDGE of shell_layers.glsl
 
 
 class _Surface(NamedTuple):
@@ -97,7 +96,7 @@ def _skin_surface(drawn: Drawn, skin: Skin, view: PlacedView) -> _Surface:
     """Return both sides of the skin."""
     mesh = skin.stream.mesh
     rows = mesh.vertices
-    values = np.zeros((len(rows), 2))
+    values = np.zeros((len(rows), 3))
     if drawn.has_normals:
         values[:, 0] = unit_vectors(rows[:, 3:6] @ view.world_to_view[:3, :3])[:, 1]
     if drawn.is_opened:
@@ -126,7 +125,7 @@ def _part_surface(placed: PlacedBuffers, cut: CutPlane | None, view: PlacedView)
         beyond = np.clip(positions @ plane[:3] + plane[3], 0.0, most)[:, None]
         sunk = _multiplied(positions + beyond * unit_vectors(positions), view.projection)
         clip[:, 2] = sunk[:, 2] / sunk[:, 3] * clip[:, 3]
-    values = np.zeros((len(positions), 2))
+    values = np.zeros((len(positions), 3))
     return _surface_of(placed, clip, values, SURFACE_KIND)
 
 
@@ -142,15 +141,13 @@ def _hair_surface(placed: PlacedBuffers, view: PlacedView) -> _Surface:
     positions = _multiplied(outline, model_view)[:, :3]
     normals = unit_vectors(placed.part.normals @ model_view[:3, :3])
     facing = -(normals * unit_vectors(positions)).sum(axis=1)
-    is_frayed = np.maximum(facing, 0.0) < _FRAYED_EDGE * striation[:, 6]
-    dense = np.where(is_frayed, 0.0, striation[:, 5])
-    values = np.stack([dense, np.abs(facing)], axis=1)
+    values = np.stack([striation[:, 5], facing, striation[:, 6]], axis=1).astype(np.float64)
     clip = _multiplied(positions, view.projection)
     return _surface_of(placed, clip, values, HAIR_KIND)
 
 
 def _surface_of(placed: PlacedBuffers, clip: Floats64, values: Floats64, kind: int) -> _Surface:
-    """Return the front of a part with these corners in clip space, (V, 4), and values, (V, 2)."""
+    """Return the front of a part with these corners in clip space, (V, 4), and values, (V, 3)."""
     return _Surface(
         corners=clip,
         values=values,

@@ -28,7 +28,7 @@ bool is_hair(float dense, float facing) {
 
 // Whether the edge of hair is smoothed here. The hem is not: it fades out, and each layer ends at
 // another place there. Nor are outlines that fray. facing: negative on the inner side of hair.
-// sample_kernels.py and software_mixer.py have the same numbers.
+// sample_kernels.py has the same numbers.
 bool has_edge(float dense, float facing, float fray) {
     return dense >= 0.9 * seen_share(abs(facing)) && max(facing, 0.0) >= FRAYED_EDGE * fray;
 }
