@@ -173,8 +173,8 @@ def test_a_file_keeps_its_vertices_in_their_order(whole):
     assert tuple(player.shapes("head")) == ARKIT_SHAPES
     found = document(whole.avatar)
     count = 0
-    for mesh in found["meshes"]:
-        for primitive in mesh["primitives"]:
+    for each in found["meshes"]:
+        for primitive in each["primitives"]:
             count += found["accessors"][primitive["indices"]]["count"] // 3
     assert count == len(mesh.faces)
     assert [each["name"] for each in found["materials"]].count("skin") == 1
