@@ -218,7 +218,8 @@ def _with_dense_hem(hair: Part) -> Part:
     assert hair.striation is not None
     striation = hair.striation.copy()
     striation[:, 5] = np.minimum(3.0 * striation[:, 5] + 0.8, 2.0)
-    striation[striation[:, 6] > 0.0, 5] = 0.0  # else the inner side fills outlines that fray
+    frayed = 0.35  # fray from which the inner side would fill the outline; below, it closes gaps
+    striation[striation[:, 6] > frayed, 5] = 0.0
     striation[:, 6] = 0.0
     return replace(hair, striation=striation)
 
