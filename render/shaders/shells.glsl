@@ -81,6 +81,7 @@ vec2 reach(vec2 number) {
 
 void main() {
     float facing = abs(surface.facing);
+    float slope = length(vec2(dFdx(surface.facing), dFdy(surface.facing)));
     // Strands and locks finer than a pixel fade into their mean.
     vec2 share = clamp(1.5 - 1.25 * fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     // Seen from the side, single tips would look like dashed lines.
@@ -104,7 +105,6 @@ void main() {
     float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     // Strands end one by one before the outline of all layers but the lowest.
-    float slope = length(vec2(dFdx(surface.facing), dFdy(surface.facing)));
     if (surface.layer > layer_place(0.5, layers) && surface.fray > 0.0 && facing < SIDEWAYS.x) {
         // At least some pixels wide, else the outline has steps.
         float frayed = surface.fray * max(FRAYED + dot(UNEVENLY, tones), FRAYED_PIXELS * surface.pixel);

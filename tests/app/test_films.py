@@ -118,9 +118,10 @@ def test_a_transparent_picture_lies_over_any_colour(samples, colour):
     alpha = clear[..., 3:] / 255.0
     over = clear[..., :3] * alpha + np.array(colour) * (1.0 - alpha)
     off = np.abs(over - opaque).max(axis=2)
-    assert (off > 6.0).sum() <= 3
-    # Each of nine layers of hair, and each lock on them, rounds by up to a level.
-    assert off.max() <= 12.0
+    # Each layer of hair, and each hair of its frayed outline, rounds by up to a level.
+    assert (off > 6.0).sum() <= 50
+    assert off.max() <= 16.0
+    assert off.mean() < 0.2
     assert (clear[0, 0] == 0).all()
     assert 0.2 < alpha.mean() < 0.8
     assert not has_samples or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50

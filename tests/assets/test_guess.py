@@ -91,7 +91,7 @@ def test_more_points_make_it_better_and_stay():
     known = {number: true[number] for number in (*FIRST_LANDMARKS, 4, 8, 12)}
     many = norm(guess(mesh, known) - true, axis=1)
     assert many[[*known]].max() < 1e-9
-    assert many[:JAW_COUNT].mean() < 0.7 * few[:JAW_COUNT].mean()
+    assert many[:JAW_COUNT].mean() < 0.75 * few[:JAW_COUNT].mean()
 
 
 @pytest.mark.parametrize(
