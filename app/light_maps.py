@@ -15,17 +15,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
 
 from risorius import render
+from risorius.geometry.arrays import Floats32, Unsigned8
 
 from .errors import UserError
 from .extras import optional_import
 from .files import read_bytes
 
 LIGHT_SUFFIXES = (".hdr", ".exr")
-Pixels = npt.NDArray[np.float32]
 
 
 class SceneLight(NamedTuple):
@@ -137,7 +136,7 @@ def _radiance_size(content: bytes) -> tuple[int, int, int]:
     return int(height), int(width), len(head) + 2 + found.end()
 
 
-def _radiance(content: bytes) -> Pixels:
+def _radiance(content: bytes) -> Floats32:
     """Read the pixels of a Radiance file, shape (H, W, 3); raise ValueError for another file."""
     height, width, begin = _radiance_size(content)
     data = np.frombuffer(content, np.uint8, offset=begin)
@@ -149,7 +148,7 @@ def _radiance(content: bytes) -> Pixels:
     return np.asarray(np.where(rgbe[..., 3:] > 0, rgbe[..., :3] * scale, 0.0), np.float32)
 
 
-def _unpacked_lines(data: npt.NDArray[np.uint8], height: int, width: int) -> npt.NDArray[np.uint8]:
+def _unpacked_lines(data: Unsigned8, height: int, width: int) -> Unsigned8:
     """Decode lines of four run-length encoded channels; shape (H, W, 4)."""
     most_alike = 127  # equal bytes in a run, which takes two bytes
     if len(data) < height * (4 + 8 * math.ceil(width / most_alike)):
@@ -201,7 +200,7 @@ def _openexr_size(path: Path) -> tuple[int, int]:
     return height, width
 
 
-def _openexr(path: Path) -> Pixels:
+def _openexr(path: Path) -> Floats32:
     """Read the pixels of an OpenEXR file, shape (H, W, 3); raise ValueError if it is broken."""
     with _opened_openexr(path, header_only=False) as file:
         channels = file.channels()

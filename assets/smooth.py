@@ -1,11 +1,8 @@
 """Small functions of arrays: a smooth step, a bump, means of blocks."""
 
 import numpy as np
-import numpy.typing as npt
 
 from ..geometry.arrays import Floats32, Floats64
-
-Points = npt.NDArray[np.float64]
 
 
 def smooth_step(low: float, high: float, values: Floats64) -> Floats64:

@@ -14,21 +14,19 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import trimesh
 
 from risorius import refine
 from risorius.assets.sheets import make_grid
 from risorius.assets.topology import grid_faces
-from risorius.geometry.arrays import Integers32
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import SurfacePoints, closest_points
 from risorius.geometry.directions import unit_vectors
 
 from .report import Target, at_least, processor, table
 
-Points = npt.NDArray[np.float64]
-PointsAndFaces = tuple[Points, Integers32]
-Map = Callable[[Points], Points]
+PointsAndFaces = tuple[Floats64, Integers32]
+Map = Callable[[Floats64], Floats64]
 
 ROUND_COUNT = 20  # rounds of timing a frame
 
@@ -70,21 +68,21 @@ def tube(around: int, along: int) -> PointsAndFaces:
     return rings.reshape(-1, 3), grid_faces(number[:, ::-1], closed=True)
 
 
-def rolled(points: Points) -> Points:
+def rolled(points: Floats64) -> Floats64:
     """Roll a plane along x into a cylinder, whose axis lies 1.5 below the plane."""
     radius = 1.5 + points[:, 2]
     angle = points[:, 0] / 1.5
     return np.stack([radius * np.sin(angle), points[:, 1], radius * np.cos(angle) - 1.5], axis=1)
 
 
-def waved(points: Points) -> Points:
+def waved(points: Floats64) -> Floats64:
     """Bend a plane along the x axis, and a little across it."""
     moved = points.copy()
     moved[:, 2] += 0.15 * np.sin(3.0 * points[:, 0] + points[:, 1])
     return moved
 
 
-def twisted(points: Points) -> Points:
+def twisted(points: Floats64) -> Floats64:
     """Turn all points about the x axis, more at larger x."""
     angle = 0.8 * points[:, 0]
     y = np.cos(angle) * points[:, 1] - np.sin(angle) * points[:, 2]
@@ -92,12 +90,12 @@ def twisted(points: Points) -> Points:
     return np.stack([points[:, 0], y, z], axis=1)
 
 
-def stretched(points: Points) -> Points:
+def stretched(points: Floats64) -> Floats64:
     """Stretch a sphere into an ellipsoid."""
     return points * [1.3, 0.8, 1.0]
 
 
-def swollen(points: Points) -> Points:
+def swollen(points: Floats64) -> Floats64:
     """Make a tube one and a half times as thick."""
     return points * [1.0, 1.5, 1.5]
 
@@ -112,20 +110,20 @@ EMBEDDING_CASES: tuple[tuple[str, PointsAndFaces, PointsAndFaces, tuple[Map, ...
 class FlatBinding:
     """A point on the flat triangle nearest at rest, and the offset in the triangle's own axes."""
 
-    def __init__(self, faces: Integers32, rest: Points, points: Points) -> None:
+    def __init__(self, faces: Integers32, rest: Floats64, points: Floats64) -> None:
         """Bind `points` at rest."""
         self._places: SurfacePoints = closest_points(points, rest, faces)
         away = points - self._places.interpolate(rest)
         self._offsets = np.einsum("nij,ni->nj", self._axes(rest), away)
 
-    def evaluate(self, positions: Points, *, offset: bool) -> Points:
+    def evaluate(self, positions: Floats64, *, offset: bool) -> Floats64:
         """The moved points, with or without their offsets."""
         places = self._places.interpolate(positions)
         if not offset:
             return places
         return np.asarray(places + np.einsum("nij,nj->ni", self._axes(positions), self._offsets))
 
-    def _axes(self, positions: Points) -> Points:
+    def _axes(self, positions: Floats64) -> Floats64:
         a, b, c = positions[self._places.corners].swapaxes(0, 1)
         first = unit_vectors(b - a)
         normal = unit_vectors(np.cross(b - a, c - a))
@@ -186,7 +184,7 @@ def targets(rows: list[EmbeddingRow]) -> list[Target]:
     return [at_least("flat binding with offset by ours", least, 3.0)]
 
 
-def _milliseconds(embedding: refine.Embedding, positions: Points) -> float:
+def _milliseconds(embedding: refine.Embedding, positions: Floats64) -> float:
     times = []
     for _ in range(ROUND_COUNT):
         start = time.perf_counter()
@@ -195,5 +193,5 @@ def _milliseconds(embedding: refine.Embedding, positions: Points) -> float:
     return 1e3 * float(np.median(times))
 
 
-def _root_mean_square(vectors: Points) -> float:
+def _root_mean_square(vectors: Floats64) -> float:
     return float(np.sqrt((vectors**2).sum(axis=1).mean()))

@@ -25,13 +25,13 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import load_head
-from risorius.geometry.arrays import Flags, Integers32
+from risorius.geometry.arrays import Flags, Floats64, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .report import Target, at_most, table
-from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, Points, read_arrays
+from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, read_arrays
 
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
@@ -50,12 +50,12 @@ class IdentitySpace:
     identity at one standard deviation.
     """
 
-    mean: Points
+    mean: Floats64
     """Shape (V, 3)."""
     triangles: Integers32
     landmarks: Integers32
     """Vertex indices of the 68 landmarks."""
-    modes: Points
+    modes: Floats64
     """Shape (k, V, 3); a weight of 1 is one standard deviation."""
 
     @classmethod
@@ -74,7 +74,7 @@ class IdentitySpace:
             MILLIMETRES_PER_CENTIMETRE * modes.astype(np.float64),
         )
 
-    def person(self, weights: Points) -> Points:
+    def person(self, weights: Floats64) -> Floats64:
         """The vertices of the person with these weights [mm], shape (V, 3)."""
         return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
@@ -129,17 +129,17 @@ class IdentitySpace:
 class HeadMesh:
     """One mesh of a head [mm], with its unit normals and the points of its 68 landmarks."""
 
-    vertices: Points
+    vertices: Floats64
     faces: Integers32
-    normals: Points
-    landmarks: Points
+    normals: Floats64
+    landmarks: Floats64
 
 
 @dataclass(frozen=True)
 class Remainder:
     """The difference between a surface and the nearest person of the modes."""
 
-    weights: Points
+    weights: Floats64
     """Weights of the modes, shape (k,), in standard deviations."""
     distances: Mapping[str, float]
     """RMS by region, and of "all" [mm]; NaN for an empty region."""
@@ -225,8 +225,8 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rema
 
 
 def _point_derivatives(
-    modes: Points, points: Points, numbers: Integers32, directions: Points
-) -> Points:
+    modes: Floats64, points: Floats64, numbers: Integers32, directions: Floats64
+) -> Floats64:
     """Derivative of points along `directions` (n, 3), by modes, turns and shifts, (n, K + 6).
 
     modes: rotated, shape (K, V, 3). numbers: indices of the points, shape (n,).
@@ -238,8 +238,8 @@ def _point_derivatives(
 
 
 def _nearest_surface_points(
-    points: Points, triangles: Integers32, asked: Integers32, surface: HeadMesh
-) -> tuple[Points, Points, Points]:
+    points: Floats64, triangles: Integers32, asked: Integers32, surface: HeadMesh
+) -> tuple[Floats64, Floats64, Floats64]:
     """Nearest point of the surface to each point, its normal, and the cosine between both
     normals.
     """
@@ -251,11 +251,11 @@ def _nearest_surface_points(
     return at.interpolate(surface.vertices), facing, cosine
 
 
-def _rms(values: Points) -> float:
+def _rms(values: Floats64) -> float:
     return float(np.sqrt((values**2).mean())) if len(values) else float("nan")
 
 
-def _median(values: Points) -> float:
+def _median(values: Floats64) -> float:
     return float(np.median(values)) if len(values) else float("nan")
 
 

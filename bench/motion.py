@@ -28,9 +28,10 @@ import numpy as np
 from risorius import sim
 from risorius.app.errors import UserError
 from risorius.app.recordings.names import shape_of
+from risorius.geometry.arrays import Floats64
 
 from .report import Target, at_least, at_most, table
-from .subjects import Points, Scans, settled_positions
+from .subjects import Scans, settled_positions
 
 
 class MotionRow(NamedTuple):
@@ -76,7 +77,7 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     return []
 
 
-def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
+def _moved(simulation: sim.Simulation, shapes: list[str]) -> Floats64:
     """Displacement by shapes at 1 [mm], (V, 3).
 
     A shape that is a fraction of another shape is measured from the pose of that shape.
@@ -93,14 +94,14 @@ def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
     )
 
 
-def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) -> MotionRow:
+def _row(name: str, moved: Floats64, scanned: Floats64, simulation: sim.Simulation) -> MotionRow:
     """Score one shape by its simulated and scanned displacements, (V, 3) [mm]."""
     areas = simulation.areas[:, None]
 
-    def product(a: Points, b: Points) -> float:
+    def product(a: Floats64, b: Floats64) -> float:
         return float((areas * a * b).sum())
 
-    def cosine(a: Points) -> float:
+    def cosine(a: Floats64) -> float:
         own = product(a, a)
         return product(a, scanned) / float(np.sqrt(own * true)) if own > 0.0 else 0.0
 
@@ -115,7 +116,7 @@ def _row(name: str, moved: Points, scanned: Points, simulation: sim.Simulation) 
     )
 
 
-def blobs_of(skin: Points, scanned: Points) -> Iterator[Points]:
+def blobs_of(skin: Floats64, scanned: Floats64) -> Iterator[Floats64]:
     """Smooth bumps of each width where a scan moves skin (V, 3) farthest, shape (V, 3)."""
     size = np.linalg.norm(scanned, axis=1)
     peak = int(size.argmax())

@@ -24,7 +24,7 @@ from risorius.app.extras import optional_import
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.refine.mesh import threads
 
-from .refine import OPTIONS_OF_RULES, Load, Points, interleaved, load_of
+from .refine import OPTIONS_OF_RULES, Load, interleaved, load_of
 from .report import processor, table
 
 Progress = Callable[[str], object]
@@ -46,14 +46,14 @@ class TimedPair(NamedTuple):
 
 
 def timed_pair(
-    load: Load, method: str, calls: Sequence[Callable[[Points], object]], seconds: float
+    load: Load, method: str, calls: Sequence[Callable[[Floats64], object]], seconds: float
 ) -> TimedPair:
     """Time two calls in turn for about `seconds`, at least five pairs.
 
     Other work on the machine slows both calls of a pair.
     """
 
-    def run(call: Callable[[Points], object]) -> None:
+    def run(call: Callable[[Floats64], object]) -> None:
         for frame in load.frames:
             call(frame)
 
@@ -100,7 +100,7 @@ def by_threads(
     return rows
 
 
-def _refine(refiner: refine.Refiner, thread_count: int, positions: Points) -> None:
+def _refine(refiner: refine.Refiner, thread_count: int, positions: Floats64) -> None:
     """Refine a frame by this number of threads."""
     threads.THREAD_COUNT = thread_count
     refiner.refine(positions)
@@ -148,7 +148,7 @@ def _text(titles: Sequence[str], columns: str, rows: Sequence[TimedPair]) -> str
     return "\n".join([*titles, note, "", *table(f"mesh:<6|{columns}|gain:7.2f", rows)])
 
 
-def _rivals(load: Load, igl: Any) -> Iterator[tuple[str, Callable[[Points], object]]]:
+def _rivals(load: Load, igl: Any) -> Iterator[tuple[str, Callable[[Floats64], object]]]:
     matrix = igl.loop_matrix(load.faces.astype(np.int64), len(load.rest))[0].tocsr()
     yield "libigl, loop_matrix", partial(_multiply, matrix)
     starts = matrix.indptr.astype(np.int32)
@@ -160,12 +160,12 @@ def _rivals(load: Load, igl: Any) -> Iterator[tuple[str, Callable[[Points], obje
     yield "numba, a plain loop", lambda positions: multiply(*kept, positions, out)
 
 
-def _multiply(matrix: Any, positions: Points) -> object:
+def _multiply(matrix: Any, positions: Floats64) -> object:
     return matrix @ positions
 
 
 def multiply_plainly(
-    starts: Integers32, columns: Integers32, weights: Floats64, positions: Points, out: Points
+    starts: Integers32, columns: Integers32, weights: Floats64, positions: Floats64, out: Floats64
 ) -> None:
     """Write the product of a sparse matrix and positions, in plain numba."""
     for row in range(len(out)):

@@ -28,14 +28,14 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
-from risorius.geometry.arrays import Flags, Floats32
+from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
 
 from .canvas import CLAY_STYLE, Canvas, Drawing
 from .report import Target, at_least, table
-from .subjects import Points, Subject
+from .subjects import Subject
 
 AnyMesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
@@ -131,7 +131,7 @@ def measure(
 
 def _bound_method(
     subject: Subject, refiner: str, options: Mapping[str, Any]
-) -> Callable[[Points], AnyMesh]:
+) -> Callable[[Floats64], AnyMesh]:
     """Bind a method to the subject's coarse mesh: a function from positions (V, 3) to a mesh."""
     own = dict(options)
     if own.get("scheme") == "detail":
@@ -151,7 +151,7 @@ def _bound_method(
 
 
 def _refined_to_count(
-    refiner: refine.Refiner, criterion: Any, positions: Points, most: float
+    refiner: refine.Refiner, criterion: Any, positions: Floats64, most: float
 ) -> refine.RefinedMesh:
     """Refine with both thresholds scaled so that there are `most` triangles or slightly fewer."""
     usual = type(criterion)().thresholds
@@ -175,7 +175,7 @@ def _refined_to_count(
 
 def _grey_pictures(
     canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: AnyMesh
-) -> tuple[Points, Flags]:
+) -> tuple[Floats64, Flags]:
     """Grey levels over the background (views, N, N), and flags of covered fine pixels.
 
     N = PICTURE_SIDE. The flags have shape (views, S, S), where S = SUPERSAMPLING * N.
@@ -189,7 +189,9 @@ def _grey_pictures(
     return _block_means(np.where(covered, fine, level_behind)), covered
 
 
-def _differences(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tuple[float, float]:
+def _differences(
+    shots: tuple[Floats64, Flags], truth: tuple[Floats64, Flags]
+) -> tuple[float, float]:
     """RMS difference in grey levels, and the mean number of wrong outline pixels per view."""
     (grey, covered) = shots
     (true_grey, true_covered) = truth
@@ -198,7 +200,7 @@ def _differences(shots: tuple[Points, Flags], truth: tuple[Points, Flags]) -> tu
     return float(np.sqrt(((grey - true_grey)[either] ** 2).mean())), wrong
 
 
-def _block_means(fine: npt.NDArray[Any]) -> Points:
+def _block_means(fine: npt.NDArray[Any]) -> Floats64:
     """Average the fine pixels of each pixel."""
     return np.asarray(
         fine.reshape(-1, PICTURE_SIDE, SUPERSAMPLING, PICTURE_SIDE, SUPERSAMPLING).mean(axis=(2, 4))

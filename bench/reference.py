@@ -26,11 +26,9 @@ from risorius import assets
 from risorius.app.errors import UserError
 from risorius.app.files import check_file, written_atomically
 from risorius.assets.wavefront import read_obj
-from risorius.geometry.arrays import Floats32, Integers32, Integers64
+from risorius.geometry.arrays import Floats32, Floats64, Integers32, Integers64
 
 from .subjects import DENSE_FILE, MODES_FILE
-
-Points = npt.NDArray[np.float64]
 
 MODEL_FOLDER = "FaceXModel"
 FACE_VERTICES = 9409
@@ -103,7 +101,7 @@ def _file(checkout: Path, name: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
-def _read(checkout: Path, name: str) -> tuple[Points, Integers64]:
+def _read(checkout: Path, name: str) -> tuple[Floats64, Integers64]:
     """Vertices and triangles of an OBJ file; polygons become fans."""
     file = _file(checkout, name)
     if file is None:

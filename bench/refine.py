@@ -27,7 +27,6 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import assets, refine, sim
 from risorius.app.errors import UserError
@@ -40,8 +39,6 @@ from risorius.render.surface import is_software
 
 from .report import processor, table
 from .subjects import SETTLING_FRAMES, settled_positions
-
-Points = npt.NDArray[np.float64]
 
 DEFAULT_MESHES = ("face", "20k", "200k", "1M")
 """The meshes of a run by default; 2k is for a quick look."""
@@ -58,8 +55,8 @@ class Load:
 
     name: str
     faces: Integers32
-    rest: Points
-    frames: Sequence[Points]
+    rest: Floats64
+    frames: Sequence[Floats64]
 
 
 class RefineRow(NamedTuple):
@@ -81,7 +78,7 @@ class _Case(NamedTuple):
 
     method: str
     triangles: float
-    call: Callable[[Points], object]
+    call: Callable[[Floats64], object]
 
 
 def measure(
@@ -134,7 +131,7 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
     return Load(name, faces, rest, frames)
 
 
-def _waved_positions(rest: Points, phase: float) -> Points:
+def _waved_positions(rest: Floats64, phase: float) -> Floats64:
     """Positions of the mesh at a phase of its waves, which are stronger in some places."""
     x = rest[:, 0]
     y = rest[:, 1]
@@ -177,7 +174,7 @@ def _waving_cases(load: Load) -> list[_Case]:
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
 
-    def cosines(positions: Points) -> Floats32:
+    def cosines(positions: Floats64) -> Floats32:
         normals = plain.refine(positions).normals
         return np.asarray(np.einsum("ei,ei->e", normals[a], normals[b]))
 
@@ -209,7 +206,7 @@ def _card_cases(load: Load) -> list[_Case]:
         room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
         buffers = own.run(GpuBuffers, own.gl, *room)
 
-        def frame(positions: Points, card: KahlerGl = card, out: GpuBuffers = buffers) -> None:
+        def frame(positions: Floats64, card: KahlerGl = card, out: GpuBuffers = buffers) -> None:
             card.refine_on_card(positions, out)
             own_context().gl.finish()
 

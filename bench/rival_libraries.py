@@ -16,12 +16,11 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.topology import boundary_loops
-from risorius.geometry.arrays import Integers32
+from risorius.geometry.arrays import Floats64, Integers32
 
-Points = npt.NDArray[np.float64]
 PointsAndFaces = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.integer[Any]]]
 """Positions (N, 3) and triangles (M, 3)."""
-RefinesFrame = Callable[[Points, float], PointsAndFaces]
+RefinesFrame = Callable[[Floats64, float], PointsAndFaces]
 """From positions and a limit to the refined mesh."""
 
 
@@ -32,12 +31,12 @@ class Method(NamedTuple):
     package: str
     """The distribution that contains it."""
     module: str
-    bind: Callable[[Integers32, Points], RefinesFrame]
+    bind: Callable[[Integers32, Floats64], RefinesFrame]
     has_limit: bool
     """Whether a limit sets the number of triangles; other methods make four of each."""
 
 
-def _manifold3d(faces: Integers32, rest: Points, adaptive: bool) -> RefinesFrame:
+def _manifold3d(faces: Integers32, rest: Floats64, adaptive: bool) -> RefinesFrame:
     """Smooth by tangents. Holes are filled for a closed surface; the result is without fillings."""
     manifold3d = import_module("manifold3d")
     lids: list[tuple[int, int, int]] = []
@@ -51,7 +50,7 @@ def _manifold3d(faces: Integers32, rest: Points, adaptive: bool) -> RefinesFrame
     names = np.arange(len(closed), dtype=np.uint32)
     rims = list(range(3 * count, 3 * len(closed), 3))  # first half edges of fillings
 
-    def frame(positions: Points, limit: float) -> PointsAndFaces:
+    def frame(positions: Floats64, limit: float) -> PointsAndFaces:
         """The refined surface of a frame."""
         centroids = np.array([positions[loop].mean(axis=0) for loop in loops]).reshape(-1, 3)
         points = np.concatenate([positions, centroids]).astype(np.float32)
@@ -65,13 +64,13 @@ def _manifold3d(faces: Integers32, rest: Points, adaptive: bool) -> RefinesFrame
     return frame
 
 
-def _meshlib(faces: Integers32, rest: Points) -> RefinesFrame:
+def _meshlib(faces: Integers32, rest: Floats64) -> RefinesFrame:
     """Split the edges with most curvature, and smooth the new points."""
     mrmeshpy = import_module("meshlib.mrmeshpy")
     mrmeshnumpy = import_module("meshlib.mrmeshnumpy")
     kept = mrmeshnumpy.meshFromFacesVerts(faces, rest)
 
-    def frame(positions: Points, limit: float) -> PointsAndFaces:
+    def frame(positions: Floats64, limit: float) -> PointsAndFaces:
         """The refined surface of a frame."""
         mesh = mrmeshpy.copyMesh(kept)
         mesh.points = mrmeshnumpy.pointCloudFromPoints(positions).points
@@ -88,11 +87,11 @@ def _meshlib(faces: Integers32, rest: Points) -> RefinesFrame:
     return frame
 
 
-def _pymeshlab(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
+def _pymeshlab(faces: Integers32, rest: Floats64, rule: str) -> RefinesFrame:
     """Split edges that are longer than the limit, up to three times."""
     pymeshlab = import_module("pymeshlab")
 
-    def frame(positions: Points, limit: float) -> PointsAndFaces:
+    def frame(positions: Floats64, limit: float) -> PointsAndFaces:
         """The refined surface of a frame."""
         meshes = pymeshlab.MeshSet(verbose=False)
         meshes.add_mesh(pymeshlab.Mesh(positions, faces))
@@ -104,7 +103,7 @@ def _pymeshlab(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
     return frame
 
 
-def _vtk(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
+def _vtk(faces: Integers32, rest: Floats64, rule: str) -> RefinesFrame:
     """Run one of VTK's filters for each frame; the filter object is reused."""
     modeling = import_module("vtkmodules.vtkFiltersModeling")
     data = import_module("vtkmodules.vtkCommonDataModel")
@@ -122,7 +121,7 @@ def _vtk(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
     if rule == "Adaptive":
         subdivision.SetMaximumTriangleArea(np.inf)  # the limit is a length only
 
-    def frame(positions: Points, limit: float) -> PointsAndFaces:
+    def frame(positions: Floats64, limit: float) -> PointsAndFaces:
         """The refined surface of a frame."""
         points.SetData(arrays.numpy_to_vtk(positions, deep=True))
         points.Modified()
@@ -139,7 +138,7 @@ def _vtk(faces: Integers32, rest: Points, rule: str) -> RefinesFrame:
     return frame
 
 
-def _libigl(faces: Integers32, rest: Points) -> RefinesFrame:
+def _libigl(faces: Integers32, rest: Floats64) -> RefinesFrame:
     """Multiply by the stored matrix of one level of Loop subdivision."""
     igl = import_module("igl")
     matrix, fine = igl.loop_matrix(faces.astype(np.int64), len(rest))

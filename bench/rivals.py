@@ -29,12 +29,12 @@ from risorius.app.errors import UserError
 from risorius.app.extras import optional_import
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
-from risorius.geometry.arrays import Integers32
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
 from .report import processor, table
-from .rival_libraries import RIVAL_METHODS, Method, Points, PointsAndFaces, RefinesFrame
+from .rival_libraries import RIVAL_METHODS, Method, PointsAndFaces, RefinesFrame
 from .subjects import Subject
 
 TRIANGLE_RATIO = 4.0
@@ -46,9 +46,9 @@ class Case(NamedTuple):
 
     surface: str
     faces: Integers32
-    rest: Points
-    positions: Points
-    truth: Points
+    rest: Floats64
+    positions: Floats64
+    truth: Floats64
 
 
 class RivalRow(NamedTuple):
@@ -74,7 +74,7 @@ class _Frame:
         self._refiner = refiner
         self._criterion = criterion
 
-    def __call__(self, positions: Points, limit: float) -> PointsAndFaces:
+    def __call__(self, positions: Floats64, limit: float) -> PointsAndFaces:
         """Refine with the criterion's thresholds multiplied by `limit`."""
         if self._criterion is not None:
             self._criterion.thresholds = Thresholds(limit, 5.0 * limit, "measures")
@@ -82,23 +82,23 @@ class _Frame:
         return mesh.positions, mesh.triangles
 
 
-def _adaptive(faces: Integers32, rest: Points) -> RefinesFrame:
+def _adaptive(faces: Integers32, rest: Floats64) -> RefinesFrame:
     criterion = refine.Displacement()
     refiner = refine.create("kahler", faces, rest, scheme="cubic", blend=False, criterion=criterion)
     return _Frame(refiner, criterion)
 
 
-def _everywhere(faces: Integers32, rest: Points, scheme: str) -> RefinesFrame:
+def _everywhere(faces: Integers32, rest: Floats64, scheme: str) -> RefinesFrame:
     splits = np.ones(len(refine.create("none", faces, rest).edges), dtype=np.uint8)
     refiner = refine.create("kahler", faces, rest, scheme=scheme, blend=False, splits=splits)
     return _Frame(refiner, None)
 
 
-def _unrefined(faces: Integers32, rest: Points) -> RefinesFrame:
+def _unrefined(faces: Integers32, rest: Floats64) -> RefinesFrame:
     return _Frame(refine.create("none", faces, rest), None)
 
 
-OWN_BINDINGS: Mapping[str, Callable[[Integers32, Points], RefinesFrame]] = {
+OWN_BINDINGS: Mapping[str, Callable[[Integers32, Floats64], RefinesFrame]] = {
     "not refined": _unrefined,
     "cubic where a split moves most": _adaptive,
     "cubic, all edges": partial(_everywhere, scheme="cubic"),

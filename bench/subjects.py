@@ -28,8 +28,6 @@ from risorius.assets.topology import collapsed, is_manifold
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import closest_points
 
-Points = npt.NDArray[np.float64]
-
 MILLIMETRES_PER_CENTIMETRE = 10.0  # per centimetre, the unit of a folder of scans
 DENSE_FILE = "face.npz"
 MODES_FILE = "identity_modes.npz"
@@ -53,7 +51,7 @@ class Scans:
     mesh: Mesh
     landmarks: Integers32
     """Vertex indices of the 68 landmarks."""
-    fields: Mapping[str, Points]
+    fields: Mapping[str, Floats64]
     """Expression -> displacement of all vertices, shape (V, 3)."""
 
     @classmethod
@@ -66,7 +64,7 @@ class Scans:
         is_mesh = has_triples and landmarks.shape == (68,)
         if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
             raise UserError(f"{directory / DENSE_FILE}: holds no mesh with 68 of its vertices")
-        fields: dict[str, Points] = {}
+        fields: dict[str, Floats64] = {}
         side_names = {"_L": "Left", "_R": "Right"}
         for name, array in arrays.items():
             if array.shape != vertices.shape:
@@ -88,7 +86,7 @@ class Scans:
         """The rig, fitted to the neutral face by its 68 landmarks, like to any face."""
         return fit(self.mesh, self.landmarks)
 
-    def field(self, name: str) -> Points:
+    def field(self, name: str) -> Floats64:
         """Displacement of the vertices of `head` by an expression [mm], shape (V, 3)."""
         return self.head.to_millimetres.vectors(self.fields[name][self.head.file_vertices])
 
@@ -97,8 +95,8 @@ class Scans:
 class PosePair:
     """Positions of both meshes in one expression [mm]."""
 
-    dense: Points
-    coarse: Points
+    dense: Floats64
+    coarse: Floats64
 
 
 @dataclass(frozen=True)
@@ -157,7 +155,7 @@ def fine_simulation(head: assets.Head, fine: FineMesh) -> sim.Simulation:
 
 def settled_positions(
     simulation: sim.Simulation, values: Mapping[str, float], frames: int
-) -> Points:
+) -> Floats64:
     """Vertices [mm], (V, 3), after controls were held from rest for some frames of 1/60 s."""
     simulation.reset()
     simulation.controls.set_all(values)

@@ -11,12 +11,9 @@ the finer mesh.
 
 import newton
 import numpy as np
-import numpy.typing as npt
 import warp as wp
 
 from risorius import refine
-
-Points = npt.NDArray[np.float64]
 
 CELL_COUNT = 8
 CLOTH_SIDE = 2.0  # [m]

@@ -16,9 +16,8 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-import numpy.typing as npt
 
-from ..geometry.arrays import Floats64
+from ..geometry.arrays import Floats64, Integers64
 from .style import Light, MapBackground
 
 TRIED_STRIDE = 7  # texels from one tried key light to the next: time grows with their square
@@ -202,7 +201,7 @@ def _street() -> Floats64:
     return np.asarray(light + lamp[..., None] * [24.0, 18.5, 12.5])
 
 
-def _gaussian(distances: npt.NDArray[np.int64], deviation: float) -> Floats64:
+def _gaussian(distances: Integers64, deviation: float) -> Floats64:
     """Return Gaussian weights of texels at some distances, (n, n); each row has the sum 1.
 
     distances: [texels], (n, n). deviation: standard deviation [texels].

@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import assets
 from risorius.assets.meshes import Mesh
+from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.sides import sides_of
 
-Array = npt.NDArray[np.float64]
 TURN_MATRIX = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, facing y
 METRES_PER_MILLIMETRE = 0.001
 SHIFT_VECTOR = (3.0, -2.0, 1.6)
@@ -23,7 +22,7 @@ class UserHead:
     """A user's head, in metres, with z up."""
 
     mesh: Mesh
-    landmarks: npt.NDArray[np.int32]
+    landmarks: Integers32
 
     def write(self, folder: Path, *, points: bool = False, **changes: Any) -> tuple[Path, Path]:
         """Write the mesh file and the landmark file; `changes` replaces vertices or landmarks."""
@@ -52,7 +51,7 @@ def write_topology(folder: Path, other: UserHead, **changes: Any) -> Path:
     return file
 
 
-def shape(x: Array) -> Array:
+def shape(x: Floats64) -> Floats64:
     """A smooth change of shape [mm]: a broader, shorter face with a longer chin and a bent nose."""
     across, up, ahead = x.T
     nose = np.exp(-((across / 18.0) ** 2) - ((up + 25.0) / 25.0) ** 2)
@@ -71,7 +70,7 @@ def user_head(level: int = 1) -> UserHead:
     return UserHead(Mesh(vertices, fine.faces), head.landmarks)
 
 
-def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
+def closed(mesh: Mesh, vertices: Integers32) -> Mesh:
     """The mesh with a new vertex in the middle of an opening, and a fan of triangles around it.
 
     vertices: some vertices on the edge of the opening.
@@ -83,7 +82,7 @@ def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     return Mesh(np.vstack([mesh.vertices, centre]), np.vstack([mesh.faces, fan]).astype(np.int32))
 
 
-def nearly_shut(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
+def nearly_shut(mesh: Mesh, vertices: Integers32) -> Mesh:
     """The mesh with an eye that opens by a fifth of its height; vertices: some on its edge."""
     centre = mesh.vertices[vertices].mean(axis=0)
     reach = 20.0  # [mm]
@@ -93,7 +92,7 @@ def nearly_shut(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     return replace(mesh, vertices=places)
 
 
-def filled(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
+def filled(mesh: Mesh, vertices: Integers32) -> Mesh:
     """The mesh with an opening closed by a strip of triangles between vertices of its edge."""
     left = _edge_around(mesh, vertices)
     strip = []
@@ -106,7 +105,7 @@ def filled(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     return Mesh(mesh.vertices, np.vstack([mesh.faces, strip]).astype(np.int32))
 
 
-def _edge_around(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> list[int]:
+def _edge_around(mesh: Mesh, vertices: Integers32) -> list[int]:
     """Vertices around the edge of an opening, in order, from its right corner."""
     centre = mesh.vertices[vertices].mean(axis=0)
     ways = {tuple(way) for way in sides_of(mesh.faces).tolist()}

@@ -10,22 +10,24 @@ import numpy.typing as npt
 import trimesh
 from numpy.linalg import norm
 
+from risorius.geometry.arrays import Floats64, Integers32
+
 
 @dataclass(frozen=True)
 class Mesh:
     """Vertex positions, shape (V, 3), and triangles, shape (F, 3)."""
 
-    vertices: npt.NDArray[np.float64]
-    faces: npt.NDArray[np.int32]
-    uv: npt.NDArray[np.float64] | None = None
-    face_uv: npt.NDArray[np.int32] | None = None
+    vertices: Floats64
+    faces: Integers32
+    uv: Floats64 | None = None
+    face_uv: Integers32 | None = None
 
 
 def _mesh(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Mesh:
     return Mesh(np.array(vertices, dtype=np.float64), np.array(faces, dtype=np.int32))
 
 
-def flat_cross(u: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def flat_cross(u: Floats64, v: Floats64) -> Floats64:
     """The last coordinate of the vector products of u and v, from their first two ones."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
@@ -195,7 +197,7 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
     return _mesh(shuffled, faces)
 
 
-def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> npt.NDArray[np.float64]:
+def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> Floats64:
     """Positions deformed by a few random plane waves, shape (V, 3).
 
     Some places bend, some do not.
@@ -237,7 +239,7 @@ def tube(segments: int = 8, rings: int = 4) -> Mesh:
     )
 
 
-def rotation(seed: int) -> npt.NDArray[np.float64]:
+def rotation(seed: int) -> Floats64:
     """A random rotation matrix, shape (3, 3)."""
     matrix, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))
     return np.asarray(matrix * np.linalg.det(matrix))
@@ -272,7 +274,7 @@ def slit() -> Mesh:
     return _mesh(np.concatenate([vertices, vertices[list(upper)]]), faces)
 
 
-def opened(mesh: Mesh, height: float) -> npt.NDArray[np.float64]:
+def opened(mesh: Mesh, height: float) -> Floats64:
     """Vertices of `slit` whose sides are moved apart in its plane, to arcs; shape (V, 3)."""
     columns, rows = np.ptp(mesh.vertices, axis=0)[:2]
     positions = mesh.vertices.copy()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from risorius.geometry.arrays import Flags, Floats64
 
 LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from corner to corner
     "mouth": (60, 67, 66, 65, 64),
@@ -20,7 +20,9 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
 }
 
 
-def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
+def apertures(
+    positions: Floats64, triangles: npt.NDArray[Any], landmarks: Floats64
+) -> dict[str, float]:
     """Return the openings of mouth and eyes, seen along z: name -> height [mm].
 
     positions: vertices [mm], (V, 3). triangles: (F, 3). landmarks: current positions [mm], (68, 3).
@@ -34,7 +36,7 @@ def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -
     return found
 
 
-def opening(near: Array, edge: Array) -> float:
+def opening(near: Floats64, edge: Floats64) -> float:
     """Return the greatest height [mm] of the gap above a lower lip or lid, seen along z.
 
     near: triangles of the skin nearby, (m, 3, 3). edge: points of the lower edge, (n, 3).
@@ -60,13 +62,13 @@ def opening(near: Array, edge: Array) -> float:
     )
 
 
-def around(triangles: Array, centre: Array, reach: float) -> Array:
+def around(triangles: Floats64, centre: Floats64, reach: float) -> Floats64:
     """Return the triangles (n, 3, 3) whose centres lie within `reach` [mm] of a point (3,)."""
-    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - centre, axis=1) < reach]
+    near: Floats64 = triangles[np.linalg.norm(triangles.mean(axis=1) - centre, axis=1) < reach]
     return near
 
 
-def _widest_gap(low: Array, high: Array, height: float) -> float:
+def _widest_gap(low: Floats64, high: Floats64, height: float) -> float:
     """Return the greatest height [mm] of a gap between the triangles that a plane cuts.
 
     The gap must begin near `height`. low, high: heights between which the plane cuts each triangle
@@ -79,15 +81,15 @@ def _widest_gap(low: Array, high: Array, height: float) -> float:
     return float(open_above[np.abs(reached - height) < window].max(initial=0.0))
 
 
-def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
+def to_viewer(triangles: Floats64) -> Flags:
     """Return whether each triangle (n, 3, 3) faces the viewer; flags (n,)."""
     one = triangles[:, 1] - triangles[:, 0]
     other = triangles[:, 2] - triangles[:, 0]
-    facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
+    facing: Flags = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
     return facing
 
 
-def cut_by(triangles: Array, x: float | Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+def cut_by(triangles: Floats64, x: float | Floats64) -> tuple[Floats64, Flags]:
     """Cut the sides of triangles (n, 3, 3) with planes of constant x.
 
     x: one plane for all triangles, or one for each, (n, 1). Returns the points where planes meet

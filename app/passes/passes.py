@@ -21,6 +21,7 @@ import numpy.typing as npt
 from risorius import render
 from risorius.assets import Segment
 from risorius.assets.identities import GLASSES_NAME, HAIR_NAME, MASK_NAME
+from risorius.geometry.arrays import Unsigned8
 
 from ..pipeline import Pipeline, Viewport
 from ..refining.drawn_mesh import DrawnMesh
@@ -28,7 +29,6 @@ from ..refining.drawn_mesh import DrawnMesh
 IMAGE_PASSES = ("depth", "normal", "triangle", "splits", "segmentation")
 OF_FACES = ("segmentation", "landmarks")  # other scenes lack these
 PASS_NAMES = (*IMAGE_PASSES, "landmarks")
-Bytes = npt.NDArray[np.uint8]
 
 
 class Passes:
@@ -79,13 +79,13 @@ class Passes:
             found["segmentation"] = self._segmentation(geometry, drawn.triangle_count)
         return {name: found[name] for name in IMAGE_PASSES if name in wanted}
 
-    def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
+    def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Unsigned8:
         """Return the classes of pixels: parts by their triangles, skin by a map of its texture."""
         face = self.scene.face
         if face is None:
             raise ValueError(f"the scene {self.scene.name} has no segmentation; a face has one")
         table = np.concatenate([np.zeros(skin_count, np.uint8), self._part_classes, [0]])
-        classes: Bytes = table.astype(np.uint8)[geometry.triangle]
+        classes: Unsigned8 = table.astype(np.uint8)[geometry.triangle]
         is_skin = (geometry.triangle >= 0) & (geometry.triangle < skin_count)
         map_ = face.head.segments
         size = len(map_)
@@ -95,7 +95,7 @@ class Passes:
         return classes
 
 
-def _classes(part: Any) -> Bytes:
+def _classes(part: Any) -> Unsigned8:
     """Return the class of each triangle of a part."""
     if part.name.startswith(HAIR_NAME):
         return np.full(len(part.faces), Segment.HAIR, np.uint8)

@@ -10,14 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from risorius.geometry.arrays import Floats64
+from risorius.geometry.arrays import Flags, Floats64
 
 from ..text import counted
 from .names import ARKIT_SHAPES, LARGEST_VALUE, letters_of, measured
-
-RowFlags = npt.NDArray[np.bool_]
 
 COUNT_COLUMN = "blendshapecount"  # number of values in a row
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
@@ -53,7 +50,7 @@ def is_flag(name: str) -> bool:
 
 def rows_without_face(
     names: Iterable[str], texts: Callable[[str], Sequence[str]], count: int
-) -> RowFlags:
+) -> Flags:
     """Return the rows in which a flag reports that no face is visible, shape (count,).
 
     names: names of columns or keys. texts: function that returns the cells of a name, "" for empty
@@ -119,7 +116,7 @@ def intensities(units: Mapping[str, Floats64], notes: list[str]) -> dict[str, Fl
     return found
 
 
-def without_rows(channels: Mapping[str, Floats64], lost: RowFlags) -> dict[str, Floats64]:
+def without_rows(channels: Mapping[str, Floats64], lost: Flags) -> dict[str, Floats64]:
     """Return the channels with NaN in rows without a face."""
     return {name: np.where(lost, np.nan, values) for name, values in channels.items()}
 
@@ -157,7 +154,7 @@ def from_percent(
     return {name: each / 100.0 for name, each in channels.items()}
 
 
-def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> RowFlags:
+def _rows_of_zeros(shapes: Mapping[str, Floats64]) -> Flags:
     """Return the rows of zeros, if they mean that no face was found; else none.
 
     Such rows mean this if three shapes of NEVER_AT_REST are never near 0 in the other rows.

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from risorius import assets, refine
 from risorius.assets.coarse import CoarseHead
 from risorius.assets.identities import Person
-from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.normals import cross_products
 from risorius.geometry.sides import edges_of, side_lengths
 
@@ -28,7 +28,7 @@ CUBIC_SCHEME = "cubic"
 SIDES = "left", "right"  # of the built-in head's rings
 EAR_VERTEX_COUNT = 14  # number of vertices along the free edge of an ear
 DETAIL_SCHEME = "detail"  # the only scheme that needs a finer mesh, see `finer_mesh`
-NO_ATTRIBUTES: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
+NO_ATTRIBUTES: Mapping[str, Floats32] = MappingProxyType({})
 OPTION_MARK = "."  # mark between a criterion and its option
 SWITCH_WORDS = {"on": True, "true": True, "off": False, "false": False}
 
@@ -37,7 +37,7 @@ def refiner_for(
     scene: Drawable,
     refinement: Refinement,
     splits: Splits | None = None,
-    attributes: Mapping[str, npt.NDArray[np.float32]] = NO_ATTRIBUTES,
+    attributes: Mapping[str, Floats32] = NO_ATTRIBUTES,
 ) -> refine.Refiner:
     """Bind the refiner of a refinement to the scene's mesh.
 

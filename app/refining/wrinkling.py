@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
+from risorius.geometry.arrays import Floats64
 from risorius.geometry.gradients import TextureGradients
 
 from ..scenes import Drawable
@@ -22,7 +23,6 @@ from ..scenes import Drawable
 WRINKLE_ATTRIBUTE = "wrinkles"  # attributes of refined meshes
 GRADIENT_ATTRIBUTE = "texture_gradients"
 Amounts = npt.NDArray[np.float32]
-Points = npt.NDArray[np.float64]
 
 
 class Wrinkling(NamedTuple):
@@ -55,7 +55,7 @@ class Compression:
         self._has_fine_shape = scene.skin.fine_shape is not None
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
-    def measure(self, positions: Points, strength: float = 1.0) -> Wrinkling | None:
+    def measure(self, positions: Floats64, strength: float = 1.0) -> Wrinkling | None:
         """Return the wrinkles of the skin at these positions, (V, 3).
 
         The result is None if there are no wrinkles, and no fine shape, which needs the gradients.
@@ -68,7 +68,7 @@ class Compression:
             return None
         return Wrinkling(amounts, self._gradients.measure(positions))
 
-    def amounts(self, positions: Points, strength: float = 1.0) -> Amounts:
+    def amounts(self, positions: Floats64, strength: float = 1.0) -> Amounts:
         """Return the depth of both furrow directions at each vertex, -1 to 1, shape (V, 2).
 
         `Wrinkles.across` has two directions for each vertex. Depths change smoothly, so furrows do

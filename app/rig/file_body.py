@@ -240,7 +240,7 @@ def _faces_among(indices: Integers, faces: Integers32, count: int) -> Integers32
 
 
 def _part(
-    name: str, points: Floats64, faces: Integers32, bone: str, roots: npt.NDArray[np.int32] | None
+    name: str, points: Floats64, faces: Integers32, bone: str, roots: Integers32 | None
 ) -> Part:
     """Make a part of points [mm] (n, 3) and faces (m, 3)."""
     colours = np.tile(np.array(TONGUE_COLOUR, np.float32), (len(points), 1))

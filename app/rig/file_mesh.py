@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.painted import Material, PaintedMesh
 from risorius.assets.pictures import decoded
-from risorius.geometry.arrays import Floats64, Integers
+from risorius.geometry.arrays import Flags, Floats32, Floats64, Integers
 from risorius.geometry.colour import to_linear
 from risorius.geometry.directions import unit_vectors
 
@@ -81,7 +80,7 @@ class FileMeshWriter:
         self._to_file = to_millimetres.inverse
         self._materials: dict[int, int] = {}
 
-    def add(self, names: tuple[str, ...], chosen: npt.NDArray[np.bool_]) -> int:
+    def add(self, names: tuple[str, ...], chosen: Flags) -> int:
         """Add the mesh with those triangles whose flag in `chosen` (F,) is set; return its index.
 
         names: names of the shapes.
@@ -96,7 +95,7 @@ class FileMeshWriter:
             mesh["extras"] = {"targetNames": list(names)}
         return self._glb.add("meshes", mesh)
 
-    def add_rigid(self, name: str, chosen: npt.NDArray[np.bool_], pivot: Floats64) -> int:
+    def add_rigid(self, name: str, chosen: Flags, pivot: Floats64) -> int:
         """Add a mesh without shapes of the triangles whose flag in `chosen` (F,) is set.
 
         pivot: origin of the mesh, in the file's coordinates, (3,). Returns the mesh's index.
@@ -118,7 +117,7 @@ class FileMeshWriter:
         self,
         attributes: dict[str, int],
         corners: Integers,
-        chosen: npt.NDArray[np.bool_],
+        chosen: Flags,
         more: dict[str, Any],
     ) -> list[dict[str, Any]]:
         """Make a primitive for each material of the n chosen triangles; corners: (n, 3)."""
@@ -253,5 +252,5 @@ def unit_of(scale: float) -> float:
     return unit if max(scale / unit, unit / scale) < UNIT_TOLERANCE else scale
 
 
-def _singles(values: Floats64) -> npt.NDArray[np.float32]:
+def _singles(values: Floats64) -> Floats32:
     return values.astype(np.float32)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import PIL.Image
 
 import risorius
+from risorius.geometry.arrays import Floats32, Floats64, Unsigned8
 
 ARRAY_BUFFER = 34962  # target of a buffer view with vertices
 ELEMENT_ARRAY_BUFFER = 34963  # target of a buffer view with corners of triangles
@@ -36,7 +37,7 @@ class Glb:
 
     def __init__(
         self,
-        times: npt.NDArray[np.float64] | None = None,
+        times: Floats64 | None = None,
         parts: dict[str, Any] | None = None,
         numbers: bytes = b"",
     ) -> None:
@@ -85,7 +86,7 @@ class Glb:
             accessor["max"] = np.atleast_1d(values.max(axis=0)).tolist()
         return self.add("accessors", accessor)
 
-    def sparse(self, vectors: npt.NDArray[np.float32]) -> int:
+    def sparse(self, vectors: Floats32) -> int:
         """Add vectors (V, 3) of which most are 0, stored sparsely; return the array's index."""
         count = len(vectors)
         nonzero_rows = np.flatnonzero(vectors.any(axis=1))
@@ -125,7 +126,7 @@ class Glb:
             )
         return self._zeros[count]
 
-    def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
+    def texture(self, image: Unsigned8, kind: str = "jpeg") -> dict[str, int]:
         """Add a picture (H, W) or (H, W, 3), top row first, as a texture.
 
         kind: "jpeg", or "png" for a lossless picture. Returns the reference for a material.
@@ -141,7 +142,7 @@ class Glb:
         view = self._view(content, None)
         return self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
 
-    def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
+    def animate(self, node: int, path: str, values: Floats64) -> None:
         """Add keyframes of a node.
 
         path: "translation", "rotation" or "weights". values: value at each time, (N, ...).

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, render
-from risorius.geometry.arrays import Floats64
+from risorius.geometry.arrays import Floats64, Unsigned8
 from risorius.geometry.colour import to_linear
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.gradients import TextureGradients
@@ -126,7 +126,7 @@ def _add_material(glb: Glb, scene: Scene, surface: MovingSurface) -> int:
 
 def _normal_map(
     surface: MovingSurface, fine: assets.FineShape, wrinkles: assets.Wrinkles | None
-) -> npt.NDArray[np.uint8]:
+) -> Unsigned8:
     """Make a normal map (H, W, 3) of fine shape and resting wrinkles.
 
     Its axes run along u, across u, and outward. As in pictures, gradients of texture coordinates
@@ -156,7 +156,7 @@ def _normal_map(
 
 def _resting_slopes(
     surface: MovingSurface, wrinkles: assets.Wrinkles, texels: Texels, size: int
-) -> npt.NDArray[np.float64]:
+) -> Floats64:
     """Return slopes along u and v, (n, 2), of wrinkles that show at rest, such as folds of lids.
 
     texels: n texels of a map with (size, size) texels.

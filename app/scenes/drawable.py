@@ -8,19 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from risorius import assets
 from risorius.assets.identities import BEARD_NAME
-from risorius.geometry.arrays import Floats32, Integers32
+from risorius.geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 
 from .bent_part import HeadPart
 from .face_under_skin import Face
 from .openings import Rim
-
-Points = npt.NDArray[np.float64]
-Pixels = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,10 +32,10 @@ class SkinImages:
 
     uv: Floats32 | None = None
     face_uv: Integers32 | None = None
-    albedo: Pixels | None = None
-    in_tone: Callable[[float], Pixels] | None = None
-    ambient_occlusion: Pixels | None = None
-    oil: Pixels | None = None
+    albedo: Unsigned8 | None = None
+    in_tone: Callable[[float], Unsigned8] | None = None
+    ambient_occlusion: Unsigned8 | None = None
+    oil: Unsigned8 | None = None
     fine_shape: assets.FineShape | None = None
     wrinkles: assets.Wrinkles | None = None
     fade: Floats32 | None = None
@@ -58,9 +52,9 @@ class Framing:
     focus: the point that a near camera looks at, (3,).
     """
 
-    extent: Points
-    framed: Points
-    focus: Points
+    extent: Floats64
+    framed: Floats64
+    focus: Floats64
 
 
 class Drawable:
@@ -77,7 +71,7 @@ class Drawable:
         self,
         name: str,
         faces: Integers32,
-        rest_positions: Points,
+        rest_positions: Floats64,
         *,
         skin: SkinImages = NO_IMAGES,
         face: Face | None = None,
@@ -90,11 +84,11 @@ class Drawable:
         self.face = face
 
     @property
-    def positions(self) -> Points:
+    def positions(self) -> Floats64:
         """The current vertices [mm], shape (V, 3), read only."""
         return self._positions_now
 
-    def place(self, positions: Points) -> None:
+    def place(self, positions: Floats64) -> None:
         """Set the vertices [mm], shape (V, 3)."""
         self._positions_now = positions
 
@@ -118,7 +112,7 @@ class Drawable:
         """
         return {}
 
-    def bone_transforms(self) -> Mapping[str, Points]:
+    def bone_transforms(self) -> Mapping[str, Floats64]:
         """Return the current place of each bone, a matrix (4, 4); rigid parts move with bones."""
         return {}
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-from ...geometry.arrays import Floats64, Integers, Integers32
+from ...geometry.arrays import Flags, Floats64, Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.sides import sides_of
 from ..meshes import Mesh
@@ -102,7 +101,7 @@ class LipCut:
             corners=corners.astype(np.int32),
         )
 
-    def is_below(self, triangles: Integers) -> npt.NDArray[np.bool_]:
+    def is_below(self, triangles: Integers) -> Flags:
         """Whether each triangle of the file (F, 3) gets new vertices; flags (F,)."""
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))

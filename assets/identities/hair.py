@@ -21,7 +21,7 @@ from ...geometry.closest import closest_points
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
 from ..model import Part
-from ..smooth import Points, smooth_step
+from ..smooth import smooth_step
 from ..topology import quarter
 from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 
@@ -103,8 +103,8 @@ class Scalp(NamedTuple):
         of concave skin do not hide the hair.
     """
 
-    points: Points
-    normals: Points
+    points: Floats64
+    normals: Floats64
     faces: Integers32
     behind: Floats64
     covers: Floats64
@@ -194,7 +194,7 @@ def _heights_of_roots(cut: Cut, behind: Floats64, ahead: Floats64, covers: Float
 
 
 def _hangs(
-    cut: Cut, off_centre: Points, normals: Points, behind: Floats64, height: Floats64
+    cut: Cut, off_centre: Floats64, normals: Floats64, behind: Floats64, height: Floats64
 ) -> Flags:
     """Return where the inner side of hair is drawn, (n,).
 
@@ -225,8 +225,8 @@ def _with_dense_hem(hair: Part) -> Part:
 
 
 def _over_skin(
-    way: Points, points: Points, normals: Points, scalp: Scalp, long: Floats64
-) -> Points:
+    way: Floats64, points: Floats64, normals: Floats64, scalp: Scalp, long: Floats64
+) -> Floats64:
     """Raise strands that would enter the skin ahead of them: skin is hollow behind ears.
 
     way: vectors from roots to tips [mm], (n, 3). points: roots on the skin [mm], (n, 3). normals:
@@ -242,7 +242,7 @@ def _over_skin(
     return np.asarray(way + rise[:, None] * normals)
 
 
-def _tone_factors(points: Points, away: Floats64) -> Floats64:
+def _tone_factors(points: Floats64, away: Floats64) -> Floats64:
     """Return factors on the colour of strands, (n, 1); away: distance from the whorl [mm], (n,)."""
     difference = 0.07  # between the tones of locks and the mean tone
     root_radius = 7.0  # [mm] around a whorl, within which dark roots show
@@ -270,7 +270,7 @@ def _first_side(cut: Cut, whorl: Floats64) -> Floats64:
 
 
 def _turned_around_whorl(
-    whorl: Floats64, out: Points, away: Floats64, comb: Points
+    whorl: Floats64, out: Floats64, away: Floats64, comb: Floats64
 ) -> tuple[Floats64, Floats64]:
     """Turn strands around a whorl; returns angles [rad], (n,), and turned directions, (n, 3).
 
@@ -284,7 +284,7 @@ def _turned_around_whorl(
     return turned, unit_vectors(comb - around)
 
 
-def _lengths(cut: Cut, points: Points, normals: Points, behind: Floats64) -> Floats64:
+def _lengths(cut: Cut, points: Floats64, normals: Floats64, behind: Floats64) -> Floats64:
     """Return lengths of strands [mm], (n,); they are uneven, as if cut by hand."""
     uneven_fraction = 0.0 if cut.knot else 0.06
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
@@ -327,7 +327,7 @@ def from_within(hair: Part, faces: Integers32) -> Part:
     return replace(hair, name=HAIR_NAME + "_inside" + hair.name.removeprefix(HAIR_NAME), **rows)
 
 
-def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) -> Scalp:
+def scalp_of(vertices: Floats64, faces: Integers32, uv: Floats64, behind: Floats32) -> Scalp:
     """Refine the triangles of a head that bear hair, and round them between their corners.
 
     vertices: [mm], (V, 3). faces: (F, 3). uv: texture coordinates of the vertices, (V, 2).
@@ -336,7 +336,7 @@ def scalp_of(vertices: Points, faces: Integers32, uv: Points, behind: Floats32) 
     """
     height, width = behind.shape
 
-    def behind_hairline(uv: Points) -> Floats64:
+    def behind_hairline(uv: Floats64) -> Floats64:
         """Return distances behind the hairline [mm], (n,), at texture coordinates, (n, 2)."""
         at = [(1.0 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5]
         sampled = scipy.ndimage.map_coordinates(behind, at, order=1, mode="nearest")

@@ -17,7 +17,7 @@ import numpy as np
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
 from ..model import Part
-from ..smooth import Points, smooth_step
+from ..smooth import smooth_step
 
 MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATION_COUNT = 3  # points along a lock: root, middle and tip
@@ -253,7 +253,7 @@ def _growth_places(hair: Part, fringe: float, chances: Floats32) -> tuple[Intege
     return np.minimum(faces, len(weights) - 1), barycentric
 
 
-def waves(places: Points, pace: float, turn: float = 0.0) -> Floats32:
+def waves(places: Floats64, pace: float, turn: float = 0.0) -> Floats32:
     """Evaluate a smooth field at points, about -1 to 1, (n, 1); pace: wave number [rad/mm]."""
     x, y, z = np.moveaxis(pace * places + np.float32(turn), 1, 0)
     bent_wave = np.sin(x + 1.3 * np.sin(0.7 * z))

@@ -15,19 +15,16 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
-from risorius.geometry.arrays import Flags, Integers32
+from risorius.geometry.arrays import Flags, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 
 from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table, parts_without_hair
 from .experiments import Outcome
-
-Points = npt.NDArray[np.float64]
 
 
 def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
@@ -66,7 +63,7 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     return Outcome(values, image_table([("the face, disgusted", cells)]))
 
 
-def lines_along(scene: Scene) -> list[Points]:
+def lines_along(scene: Scene) -> list[Floats64]:
     """For each triangle in a fold, a short line along the fold, slightly above the surface."""
     corners = scene.positions[scene.faces]
     directions, is_fold = find_folds(scene.faces, scene.positions)
@@ -90,7 +87,9 @@ class Shapes(NamedTuple):
         return f"smallest angle {self.smallest_angle:.0f}°, {self.off_fold:.0f}° off the fold"
 
 
-def measure(refiner: refine.Refiner, faces: Integers32, positions: Points) -> tuple[Shapes, Shapes]:
+def measure(
+    refiner: refine.Refiner, faces: Integers32, positions: Floats64
+) -> tuple[Shapes, Shapes]:
     """Measure the split triangles in folds, and the subtriangles that replace them.
 
     This refines `positions` (V, 3) again.
@@ -104,7 +103,7 @@ def measure(refiner: refine.Refiner, faces: Integers32, positions: Points) -> tu
     return before, _shapes(corners[is_part], directions[mesh.source[is_part]])
 
 
-def find_folds(faces: Integers32, positions: Points) -> tuple[Points, Flags]:
+def find_folds(faces: Integers32, positions: Floats64) -> tuple[Floats64, Flags]:
     """Direction of least curvature of each triangle (F, 3), and flags of triangles in folds."""
     static = refine.create("none", faces, positions).refine(positions)
     corners = static.positions.astype(np.float64)[static.triangles]
@@ -133,7 +132,7 @@ def find_folds(faces: Integers32, positions: Points) -> tuple[Points, Flags]:
     return directions, is_bent & is_straight
 
 
-def _fitted_curvatures(edges: Points, turns: Points) -> Points:
+def _fitted_curvatures(edges: Floats64, turns: Floats64) -> Floats64:
     """Fit each triangle's curvature matrix by least squares: symmetric, shape (F, 2, 2).
 
     With curvature (a b, b c), the normal changes by (a u + b v, b u + c v) along an edge (u, v).
@@ -152,7 +151,7 @@ def _fitted_curvatures(edges: Points, turns: Points) -> Points:
     return np.stack([first_row, second_row], axis=1)
 
 
-def _shapes(corners: Points, directions: Points) -> Shapes:
+def _shapes(corners: Floats64, directions: Floats64) -> Shapes:
     """Measure triangles with corners (n, 3, 3) against the fold directions (n, 3)."""
     edges = np.roll(corners, -1, axis=1) - corners
     areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)

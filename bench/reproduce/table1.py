@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import refine
 from risorius.app.capture.drawing import camera_for
@@ -34,8 +33,6 @@ from ..canvas import GOURAUD_STYLE, Canvas, Drawing
 from ..refine import interleaved
 from ..report import table
 from .experiments import Outcome
-
-Points = npt.NDArray[np.float64]
 
 PICTURE_SIZE = (1280, 720)  # [pixels] of the picture
 SMALL_PICTURE_SIZE = (64, 36)  # so few pixels take almost no time
@@ -105,7 +102,7 @@ def _measured_rows(scene: Scene, rounds: int) -> list[TableRow]:
     ]
 
 
-def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
+def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Floats64, int]:
     """Positions (V, 3) of the frame with most triangles in the scene's script, and their number."""
     best = -1
     fullest = scene.positions

@@ -11,11 +11,11 @@ import numpy as np
 from risorius import refine, render
 from risorius.app.pictures import Image
 from risorius.bench.canvas import Canvas, Drawing
-from risorius.bench.embedding import FlatBinding, Points, sheet
-from risorius.geometry.arrays import Integers32
+from risorius.bench.embedding import FlatBinding, sheet
+from risorius.geometry.arrays import Floats64, Integers32
 
 
-def folded(points: Points) -> Points:
+def folded(points: Floats64) -> Floats64:
     """Bend a sheet into two folds; z is the height above the sheet."""
     along = 3.2 * points[:, 0] + points[:, 1]
     middle = np.column_stack([points[:, :2], 0.3 * np.sin(along)])
@@ -44,7 +44,7 @@ def embedding() -> Image:
     return figures.sheet(cells, columns=2)
 
 
-def drawn(positions: Points, faces: Integers32) -> Image:
+def drawn(positions: Floats64, faces: Integers32) -> Image:
     """A sheet, seen obliquely from above."""
     upright = 60.0 * positions[:, [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     camera = render.OrbitCamera.framing(upright)

@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import figures
 import numpy as np
-import numpy.typing as npt
 from refinement import INK_COLOUR, NEW_COLOUR, PAPER_COLOUR, SECOND_COLOUR, Colour, Diagram
 
 from risorius import assets, refine, sim
 from risorius.app.pictures import Image
 from risorius.bench.subjects import SETTLING_FRAMES, settled_positions
-from risorius.geometry.arrays import Flags
+from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
-
-Points = npt.NDArray[np.float64]
 
 LIGHT_DIRECTION = np.array([-0.35, 0.45, 0.82])
 PANEL_SIZE = (420, 480)
@@ -32,7 +29,9 @@ def shaded(colour: Colour, light: float) -> Colour:
     return red, green, blue
 
 
-def draw_frame(diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float) -> Points:
+def draw_frame(
+    diagram: Diagram, mesh: refine.RefinedMesh, is_split: Flags, left: float
+) -> Floats64:
     """Draw the triangles that face the reader; return the places of all vertices, (N, 2)."""
     width, height = PANEL_SIZE
     centre = np.array([left + width / 2.0, CAPTION_HEIGHT + height / 2.0])

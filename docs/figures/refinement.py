@@ -21,8 +21,6 @@ from risorius.app.pictures import Image
 from risorius.geometry.arrays import Floats64
 from risorius.refine.kahler.table import POINT_COORDINATES, points_on, splits_of, subdivide
 
-Points = npt.NDArray[np.float64]
-
 PAPER_COLOUR = (255, 255, 255)
 INK_COLOUR = (32, 34, 40)
 FILL_COLOUR = (236, 240, 245)
@@ -87,12 +85,12 @@ def equilateral(centre: FigurePoint, side: float) -> Floats64:
     return np.asarray(np.asarray(centre, dtype=np.float64) + offsets)
 
 
-def points_in(corners: Points) -> Points:
+def points_in(corners: Floats64) -> Floats64:
     """The 12 numbered points of a triangle with these corners, shape (12, 2)."""
     return np.asarray(POINT_COORDINATES @ corners / 4.0)
 
 
-def apart(point: Points, centre: Points, distance: float) -> Points:
+def apart(point: Floats64, centre: Floats64, distance: float) -> Floats64:
     """Move a point (2,) by a distance [pixels] away from a centre; below 0 toward it."""
     outward = point - centre
     return np.asarray(point + distance * outward / np.linalg.norm(outward))
@@ -111,7 +109,7 @@ def new_points(splits: tuple[int, int, int]) -> list[int]:
     return middles + quarters
 
 
-def triangulation(diagram: Diagram, corners: Points, splits: tuple[int, int, int]) -> None:
+def triangulation(diagram: Diagram, corners: Floats64, splits: tuple[int, int, int]) -> None:
     """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL_COLOUR)

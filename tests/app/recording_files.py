@@ -4,14 +4,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius.app.recordings.names import ARKIT_SHAPES
 from risorius.app.recordings.reading import read_take
 from risorius.app.recordings.take import Take
+from risorius.geometry.arrays import Floats64
 
-Array = npt.NDArray[np.float64]
-Columns = Mapping[str, Sequence[object] | Array]
+Columns = Mapping[str, Sequence[object] | Floats64]
 
 ANGLE_COLUMNS = (
     "HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
@@ -57,7 +56,7 @@ def take_in(folder: Path, columns: Columns, *, rate: float | None = None) -> Tak
     return read_take(written(folder / "take.csv", columns), rate=rate)
 
 
-def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_000) -> list[str]:
+def timecodes(frames: Sequence[float] | Floats64, rate: int = 60, start: int = 36_000) -> list[str]:
     """`HH:MM:SS:FF.fff` for frames counted from `start` [s]; .fff are thousandths of a frame."""
     found = []
     for frame in frames:
@@ -70,7 +69,7 @@ def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_0
     return found
 
 
-def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object] | Array]:
+def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object] | Floats64]:
     """A raw take of Live Link Face: a face looks around; angles are in units of `unit` radians.
 
     Eyes and shapes move as in the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out for
@@ -101,7 +100,7 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
     }
 
 
-def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
+def openface(count: int = 60) -> dict[str, Sequence[object] | Floats64]:
     """An OpenFace 2 table with some of its columns: a face smiles, turns, looks up and down."""
     time = np.arange(count) / 30.0
     turn = 0.3 * np.sin(time)  # to the subject's right
@@ -128,7 +127,7 @@ def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
     }
 
 
-def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Array]:
+def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Floats64]:
     """A py-feat 1 table: every frame of a film, without times, head angles in degrees."""
     return {
         "frame": list(range(count)),
@@ -145,7 +144,7 @@ def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Array]:
     }
 
 
-def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
+def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Floats64]:
     """A py-feat 2 table: units and shapes of MediaPipe, every other frame, angles in radians."""
     columns = pyfeat(count)
     columns |= {"frame": list(range(0, 2 * count, 2)), "AU06": np.full(count, 0.4)}

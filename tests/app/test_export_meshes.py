@@ -5,7 +5,6 @@ import zipfile
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
 import pytest
 import trimesh
@@ -23,8 +22,6 @@ from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
 
 from .command_line import positions_in_blender
-
-Points = npt.NDArray[np.float64]
 
 RATE = 24.0  # frames per second
 FRAME_COUNT = 8

@@ -17,9 +17,9 @@ from risorius.app.rig.pieces import (
 )
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import eyeballs
+from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.normals import vertex_normals
 
-Points = npt.NDArray[np.float64]
 Triangles = npt.NDArray[np.int64]
 
 
@@ -29,17 +29,17 @@ class Maker:
 
     scene: FaceScene
 
-    def landmark(self, number: int) -> Points:
+    def landmark(self, number: int) -> Floats64:
         """The place of a landmark."""
-        place: Points = self.scene.rest_positions[self.scene.landmarks[number]]
+        place: Floats64 = self.scene.rest_positions[self.scene.landmarks[number]]
         return place
 
-    def part(self, name: str) -> tuple[Points, Triangles]:
+    def part(self, name: str) -> tuple[Floats64, Triangles]:
         """A part of the built-in head."""
         part = next(each for each in self.scene.parts if each.name == name)
         return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
 
-    def shell(self, chosen: npt.NDArray[np.bool_], off: float) -> tuple[Points, Triangles]:
+    def shell(self, chosen: Flags, off: float) -> tuple[Floats64, Triangles]:
         """A piece at this distance outside selected skin."""
         points = self.scene.rest_positions
         faces = self.scene.faces
@@ -47,7 +47,7 @@ class Maker:
         normals = vertex_normals(points, faces)
         return points[used] + off * normals[used], number.reshape(-1, 3)
 
-    def ball(self, side: str, share: float, forward: float) -> tuple[Points, Triangles]:
+    def ball(self, side: str, share: float, forward: float) -> tuple[Floats64, Triangles]:
         """A ball in an eye with this fraction of its radius, moved forward by fractions of it."""
         eye = next(each for each in self.scene.face.head.eyes if each.name == side)
         ball = trimesh.creation.icosphere(subdivisions=2, radius=share * eye.radius)
@@ -55,7 +55,7 @@ class Maker:
         return np.asarray(ball.vertices) + centre, np.asarray(ball.faces)
 
 
-def beard(maker: Maker) -> tuple[Points, Triangles]:
+def beard(maker: Maker) -> tuple[Floats64, Triangles]:
     """A copy of the skin of chin and jaw, with long hairs below."""
     _, height, depth = maker.scene.rest_positions.T
     lip = maker.landmark(57)[1]
@@ -66,7 +66,7 @@ def beard(maker: Maker) -> tuple[Points, Triangles]:
     return shell, faces
 
 
-def sideburns(maker: Maker) -> tuple[Points, Triangles]:
+def sideburns(maker: Maker) -> tuple[Floats64, Triangles]:
     """A full beard from the ears to the chin, without the lips."""
     across, height, depth = maker.scene.rest_positions.T
     nose = maker.landmark(33)[1]
@@ -77,7 +77,7 @@ def sideburns(maker: Maker) -> tuple[Points, Triangles]:
     return maker.shell(is_low & (depth > 0.0) & ~is_lip, 1.5)
 
 
-def bow_tie(maker: Maker) -> tuple[Points, Triangles]:
+def bow_tie(maker: Maker) -> tuple[Floats64, Triangles]:
     """A knot that touches the throat below the chin, in front of the jaw."""
     points = maker.scene.rest_positions
     chin = maker.landmark(8)
@@ -89,7 +89,7 @@ def bow_tie(maker: Maker) -> tuple[Points, Triangles]:
     return np.asarray(knot.vertices) + front + np.array([0.0, 0.0, 0.5 * depth]), knot.faces
 
 
-def glasses(maker: Maker) -> tuple[Points, Triangles]:
+def glasses(maker: Maker) -> tuple[Floats64, Triangles]:
     """Two rims and a bridge in front of the eyes; the bridge touches the nose."""
     ring = trimesh.creation.torus(22.0, 1.2, 24, 6)
     rims = []
@@ -103,7 +103,7 @@ def glasses(maker: Maker) -> tuple[Points, Triangles]:
     return np.vstack([*rims, bridge]), faces
 
 
-def deep_tongue(maker: Maker) -> tuple[Points, Triangles]:
+def deep_tongue(maker: Maker) -> tuple[Floats64, Triangles]:
     """A tongue whose root reaches down into the throat."""
     points, faces = maker.part("tongue")
     share = (points[:, 2].max() - points[:, 2]) / np.ptp(points[:, 2])
@@ -112,7 +112,7 @@ def deep_tongue(maker: Maker) -> tuple[Points, Triangles]:
     return points, faces
 
 
-def incisor(maker: Maker) -> tuple[Points, Triangles]:
+def incisor(maker: Maker) -> tuple[Floats64, Triangles]:
     """An upper tooth with a long root, as a piece of its own."""
     points, _ = maker.part("teeth_upper")
     front = points[points[:, 2].argmax()]
@@ -139,7 +139,9 @@ PIECE_CASES = {
 }
 
 
-def pieces_with(scene: FaceScene, own: tuple[Points, Triangles], name: str = "") -> list[FilePiece]:
+def pieces_with(
+    scene: FaceScene, own: tuple[Floats64, Triangles], name: str = ""
+) -> list[FilePiece]:
     """The pieces of a file with the built-in skin and another piece."""
     points, faces = own
     count = len(scene.rest_positions)
@@ -177,7 +179,7 @@ def test_single_teeth_belong_to_their_row(face):
     assert [piece.role for piece in pieces] == roles
 
 
-def arch(middle: float, front: float) -> tuple[Points, Triangles]:
+def arch(middle: float, front: float) -> tuple[Floats64, Triangles]:
     """A row of teeth in one piece, 8 mm high, around this height."""
     along = np.linspace(-1.0, 1.0, 21)
     line = np.column_stack([22.0 * along, np.full(21, middle), front - 35.0 * along**2])

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from numpy.linalg import norm
 from pytest import approx
@@ -23,7 +22,6 @@ from tests.assets.checks import check_part
 from tests.heads import UserHead, shape
 from tests.meshes import ball, flat_cross
 
-Array = npt.NDArray[np.float64]
 EYE_DISTANCE = 25.0  # [mm] around an eye, for the eye's parts
 SIDES = 3  # samples along each edge of the rim
 RINGS = 30  # samples from the middle to the rim

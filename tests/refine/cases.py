@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from risorius import refine
+from risorius.geometry.arrays import Floats32, Floats64, Integers32, Unsigned8
 from risorius.refine.beyond.blending import RAMP_WIDTH
 from tests import meshes
 from tests.refine import plain_twin
@@ -46,11 +47,11 @@ class GivenMetric(refine.Criterion):
     def __init__(self, metric: npt.ArrayLike) -> None:
         self.metric = np.asarray(metric, dtype=np.float32)
 
-    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+    def measure(self, positions: object, normals: object, metric: Floats32) -> None:
         """Write the metrics."""
         metric[:] = self.metric
 
-    def geomorph(self, edges: npt.NDArray[np.int32]) -> plain_twin.GeomorphWeights:
+    def geomorph(self, edges: Integers32) -> plain_twin.GeomorphWeights:
         """Geomorph weights that blending computes from the metrics, in the simple twin's form."""
         once = np.clip(self.metric / RAMP_WIDTH, 0, 1)
         twice = np.clip((self.metric - 1) / RAMP_WIDTH, 0, 1)
@@ -64,11 +65,11 @@ class Forced(refine.Criterion):
     def __init__(self, splits: npt.ArrayLike) -> None:
         self.wanted = np.asarray(splits, dtype=np.uint8)
 
-    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+    def mark(self, positions: object, normals: object, splits: Unsigned8) -> None:
         """Write the wanted splits."""
         splits[:] = self.wanted
 
-    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+    def measure(self, positions: object, normals: object, metric: Floats32) -> None:
         """Write metrics at which all points of these splits have grown."""
         metric[:] = np.where(self.wanted > 0, self.wanted, -np.inf)
 
@@ -117,7 +118,7 @@ def assert_equals_twin(
 
 
 def as_lists(
-    positions: npt.NDArray[np.float64], faces: npt.NDArray[np.integer]
+    positions: Floats64, faces: npt.NDArray[np.integer]
 ) -> tuple[list[plain_twin.Vector], list[tuple[int, int, int]]]:
     """Arrays in the form of the simple twin."""
     points = [(float(x), float(y), float(z)) for x, y, z in positions]
@@ -126,7 +127,7 @@ def as_lists(
 
 def places_in_source(
     origins: refine.Origins, triangles: npt.NDArray[Any], faces: npt.NDArray[Any]
-) -> npt.NDArray[np.float32]:
+) -> Floats32:
     """Barycentric places (M, 3, 3) of subtriangle corners in their input triangles (M, 3)."""
     is_corner = origins.vertices[triangles][..., None] == faces[:, None, None, :]
     return np.asarray((origins.weights[triangles][..., None] * is_corner).sum(axis=2))
@@ -135,9 +136,9 @@ def places_in_source(
 def surface_at(
     refiner: refine.Refiner,
     refined: refine.RefinedMesh,
-    faces: npt.NDArray[np.int32],
-    places: npt.NDArray[np.float64],
-) -> npt.NDArray[np.float64]:
+    faces: Integers32,
+    places: Floats64,
+) -> Floats64:
     """Positions and unit normals at places, shape (P, 3), of every input triangle, (F, P, 6)."""
     origins = refiner.origins()
     result = np.full((len(faces), len(places), 6), np.nan)
@@ -157,7 +158,7 @@ def surface_at(
 
 
 @st.composite
-def soups(draw: st.DrawFn) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+def soups(draw: st.DrawFn) -> tuple[Floats64, Integers32]:
     """Random triangles over a few vertices, including borders, fins, flips, doubles and debris."""
     vertex_count = draw(st.integers(3, 8))
     index = st.integers(0, vertex_count - 1)

@@ -1,7 +1,6 @@
 """Welding: vertices at one place are refined as one, and their values are kept apart."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -11,8 +10,6 @@ from risorius import refine
 from risorius.refine.mesh.seams import number_places
 from tests import meshes
 from tests.refine.cases import Forced, GivenMetric
-
-Points = npt.NDArray[np.float64]
 
 
 def doubled(mesh, seed):

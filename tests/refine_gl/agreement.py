@@ -15,10 +15,10 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from risorius import refine
+from risorius.geometry.arrays import Floats64, Unsigned32
 from risorius.refine_gl import KahlerGl
 from risorius.refine_gl.context import GpuError, own_context
 
-Points = npt.NDArray[np.float64]
 LOOK_OPTIONS: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
 RULES: dict[str, dict[str, Any]] = {
     "one level": {"threshold_twice": np.inf},
@@ -101,7 +101,7 @@ def bound_twice(
 def assert_same(
     processor: refine.Refiner,
     card: KahlerGl,
-    positions: Points,
+    positions: Floats64,
     view: refine.View | None = None,
 ) -> refine.RefinedMesh:
     """Refine a frame on both.
@@ -126,6 +126,6 @@ def assert_same(
     return got
 
 
-def bits(numbers: Any) -> npt.NDArray[np.uint32]:
+def bits(numbers: Any) -> Unsigned32:
     """Numbers in single precision as integers of their bits; both zeros are equal."""
     return np.ascontiguousarray(numbers + np.float32(0.0)).view(np.uint32)

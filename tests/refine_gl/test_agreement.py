@@ -10,11 +10,12 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
+from risorius.geometry.arrays import Floats64
 from risorius.refine_gl import KahlerGl
 from tests import meshes
 from tests.refine.cases import edge_count_of
 
-from .agreement import LOOK_OPTIONS, RULES, Points, assert_same, bound_twice
+from .agreement import LOOK_OPTIONS, RULES, assert_same, bound_twice
 
 POSES = ("rest", "joy", "anger", "yawn", "kiss")
 VIEW = refine.View((3.0, 2.0, 20.0))
@@ -24,7 +25,7 @@ both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
 
 
 @pytest.fixture(scope="module")
-def poses(head: Head) -> dict[str, Points]:
+def poses(head: Head) -> dict[str, Floats64]:
     """The head's vertices by name of the pose; one pose is turned and far from the origin."""
     found = {}
     face = sim.create(head)

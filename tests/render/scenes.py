@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import render
-from risorius.geometry.arrays import Floats32
+from risorius.geometry.arrays import Flags, Floats32, Integers32, Unsigned8, Unsigned32
 from tests.meshes import ball
 
 SignedImage = npt.NDArray[np.int32]  # differences of images, (H, W, 3)
@@ -31,7 +31,7 @@ class Shape:
 
     positions: Floats32
     normals: Floats32
-    triangles: npt.NDArray[np.uint32]
+    triangles: Unsigned32
 
 
 def sphere(levels: int = 2, radius: float = 50.0) -> Shape:
@@ -105,7 +105,7 @@ def draw_image(
     style: render.Style = PLAIN_STYLE,
     *,
     camera: render.OrbitCamera | None = None,
-    values: npt.NDArray[np.uint8] | None = None,
+    values: Unsigned8 | None = None,
 ) -> SignedImage:
     """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
     renderer = render.Renderer(surface)
@@ -120,14 +120,14 @@ def needs_samples(surface: render.Surface) -> None:
         pytest.skip(f"{driver} has up to {surface.samples} samples a pixel, and 4 are asked for")
 
 
-def at(image: SignedImage, x: float, y: float) -> npt.NDArray[np.int32]:
+def at(image: SignedImage, x: float, y: float) -> Integers32:
     """The colour of the pixel at the point (x, y, 0) in the view of `facing`."""
     height, width, _ = image.shape
     scale = 0.5 * height / (250.0 * np.tan(np.radians(12.5)))
     return np.asarray(image[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])
 
 
-def drawn(image: SignedImage) -> npt.NDArray[np.bool_]:
+def drawn(image: SignedImage) -> Flags:
     """Flags of pixels that are not the white background, shape (H, W)."""
     return np.asarray((image < 250).any(axis=2))
 
@@ -157,7 +157,7 @@ class Ball:
         return self.shape.normals
 
     @property
-    def faces(self) -> npt.NDArray[np.int32]:
+    def faces(self) -> Integers32:
         return self.shape.triangles.astype(np.int32)
 
     @property

@@ -5,12 +5,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from risorius import sim
+from risorius.geometry.arrays import Floats64, Integers32
 
 FRAME_TIME = 1.0 / 60.0
-Array = npt.NDArray[np.float64]
 
 
 def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[str, float]:
@@ -26,26 +25,26 @@ def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[
 
 def settled_displacement(
     simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60
-) -> Array:
+) -> Floats64:
     """Pose the face from rest, wait, and return its displacements [mm], shape (V, 3)."""
     simulation.reset()
     simulation.controls.set_all(values)
     for _ in range(frames):
         simulation.step(FRAME_TIME)
-    moved: Array = simulation.positions - simulation.rest_positions
+    moved: Floats64 = simulation.positions - simulation.rest_positions
     return moved
 
 
-def moved_landmarks(head: Any, moved: Array, *numbers: int) -> Array:
+def moved_landmarks(head: Any, moved: Floats64, *numbers: int) -> Floats64:
     """Mean displacement [mm] of some landmarks, shape (3,)."""
-    mean: Array = moved[head.landmarks[list(numbers)]].mean(axis=0)
+    mean: Floats64 = moved[head.landmarks[list(numbers)]].mean(axis=0)
     return mean
 
 
-def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) -> int:
+def inverted_triangles(faces: Integers32, rest: Floats64, now: Floats64) -> int:
     """The number of triangles whose normals turned by more than a right angle."""
 
-    def normals(x: Array) -> Array:
+    def normals(x: Floats64) -> Floats64:
         first, second, third = x[faces.T]
         return np.cross(second - first, third - first)
 

@@ -1,7 +1,6 @@
 """The tongue: it comes out between the teeth and over the lip, rises, and pierces nothing."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import sim
@@ -9,7 +8,6 @@ from risorius.assets.identities import make_person, sample_identity
 from tests.assets.checks import part, winding_numbers
 from tests.sim.poses import FRAME_TIME, settled_displacement, without
 
-Array = npt.NDArray[np.float64]
 LOWER_LIP = 66
 UPPER_LIP = 62
 POSES = (

@@ -1,7 +1,6 @@
 """Normals of the refined surface: correct, continuous, and independent of splits."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -25,7 +24,6 @@ from tests.refine.cases import (
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
 """Of a motion. What pops does so at once, however small the steps are."""
-Points = npt.NDArray[np.float64]
 
 
 def bound(mesh, scheme, criterion, normals="refined", blend=True):

@@ -1,14 +1,12 @@
 """Points that no triangle uses change no triangle, wherever they are."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from numpy.testing import assert_array_equal
 
 from risorius import refine
 from tests import meshes
 
-Points = npt.NDArray[np.float64]
 STRAY_POINTS = {
     "far": [900.0, -700.0, 40.0],
     "very far": [1e14, 0.0, 0.0],

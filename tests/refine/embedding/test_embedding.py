@@ -4,7 +4,6 @@ import re
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,8 +14,6 @@ from risorius import refine
 from tests import meshes
 
 from .twin import Twin
-
-Points = npt.NDArray[np.float64]
 
 
 def around(mesh, count=300, away=0.2):

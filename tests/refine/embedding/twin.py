@@ -7,15 +7,15 @@ carried along (refine/embedding/patches.py and frames.py).
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
-Points = npt.NDArray[np.float64]
+from risorius.geometry.arrays import Floats64, Integers32, Integers64
+
 MOST_CARRIED = 0.5  # largest error of a carried tangent, in lengths of the tangent
 
 
-def unit(vector: Points) -> Points:
+def unit(vector: Floats64) -> Floats64:
     """The vector, scaled to length one."""
     return np.asarray(vector / norm(vector))
 
@@ -29,14 +29,14 @@ class Fan:
     to the normal, (3, 2).
     """
 
-    numbers: npt.NDArray[np.int64]
-    weights: Points
-    areas: Points
-    edges: Points
-    directions: Points
+    numbers: Integers64
+    weights: Floats64
+    areas: Floats64
+    edges: Floats64
+    directions: Floats64
 
 
-def edges_of(points: Points, numbers: npt.NDArray[np.int64]) -> Points:
+def edges_of(points: Floats64, numbers: Integers64) -> Floats64:
     """Both edges of triangles from their first corner, as columns, shape (k, 3, 2)."""
     corners = points[numbers]
     return np.asarray(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
@@ -45,7 +45,7 @@ def edges_of(points: Points, numbers: npt.NDArray[np.int64]) -> Points:
 class Twin:
     """A closed coarse mesh at rest, and the embedding's surface over it."""
 
-    def __init__(self, faces: npt.NDArray[np.int32], rest: Points) -> None:
+    def __init__(self, faces: Integers32, rest: Floats64) -> None:
         self.faces = faces
         turns = np.concatenate([np.roll(faces, -corner, axis=1) for corner in range(3)])
         self.fans = [self._fan(turns[turns[:, 0] == v], rest) for v in range(len(rest))]
@@ -55,7 +55,7 @@ class Twin:
             self.slopes[a, b] = self._slope(a, b, rest)
 
     @staticmethod
-    def _fan(numbers: npt.NDArray[np.int64], rest: Points) -> Fan:
+    def _fan(numbers: Integers64, rest: Floats64) -> Fan:
         edges = edges_of(rest, numbers)
         crosses = np.cross(edges[:, :, 0], edges[:, :, 1])
         doubled = norm(crosses, axis=1)
@@ -67,7 +67,7 @@ class Twin:
         return Fan(numbers, weights, doubled / doubled.sum(), edges, directions)
 
     @staticmethod
-    def _axes(fan: Fan, points: Points) -> tuple[Points, Points]:
+    def _axes(fan: Fan, points: Floats64) -> tuple[Floats64, Floats64]:
         """Return the vertex's normal, and its tangents at rest, moved by the triangles, (3, 2)."""
         edges = edges_of(points, fan.numbers)
         normal = unit(fan.weights @ np.cross(edges[:, :, 0], edges[:, :, 1]))
@@ -75,14 +75,14 @@ class Twin:
         carried = np.einsum("k,kij->ij", fan.areas, moves) @ fan.directions
         return normal, carried - np.outer(normal, normal @ carried)
 
-    def _slope(self, a: int, b: int, rest: Points) -> Points:
+    def _slope(self, a: int, b: int, rest: Floats64) -> Floats64:
         normal, directions = self.rest_axes[a]
         edge = rest[b] - rest[a]
         flat = edge - (edge @ normal) * normal
         return np.asarray(np.linalg.lstsq(directions, flat, rcond=None)[0])
 
     @staticmethod
-    def _frame(axes: tuple[Points, Points]) -> Points:
+    def _frame(axes: tuple[Floats64, Floats64]) -> Floats64:
         """A right-handed frame in columns; polar decomposition prefers no direction."""
         normal, directions = axes
         along = unit(directions[:, 0] + np.cross(directions[:, 1], normal))
@@ -90,11 +90,11 @@ class Twin:
 
     def evaluate(
         self,
-        points: Points,
-        triangles: npt.NDArray[np.int64],
-        weights: Points,
-        offsets: Points,
-    ) -> Points:
+        points: Floats64,
+        triangles: Integers64,
+        weights: Floats64,
+        offsets: Floats64,
+    ) -> Floats64:
         """Positions for weights (N, 3) in `triangles`, (N,), with offsets, (N, 3)."""
         axes = [self._axes(fan, points) for fan in self.fans]
         quaternions = [
@@ -112,11 +112,11 @@ class Twin:
 
     def _place(
         self,
-        points: Points,
-        axes: list[tuple[Points, Points]],
-        corners: npt.NDArray[np.int32],
-        shares: Points,
-    ) -> Points:
+        points: Floats64,
+        axes: list[tuple[Floats64, Floats64]],
+        corners: Integers32,
+        shares: Floats64,
+    ) -> Floats64:
         """A point on the cubic patch over a triangle."""
         place = shares**3 @ points[corners]
         nears = np.zeros(3)
@@ -129,7 +129,9 @@ class Twin:
         middle = points[corners].mean(axis=0) + 0.25 * nears
         return np.asarray(place + 6.0 * shares.prod() * middle)
 
-    def _tangent(self, points: Points, axes: list[tuple[Points, Points]], a: int, b: int) -> Points:
+    def _tangent(
+        self, points: Floats64, axes: list[tuple[Floats64, Floats64]], a: int, b: int
+    ) -> Floats64:
         normal, directions = axes[a]
         edge = points[b] - points[a]
         now = edge - (edge @ normal) * normal

@@ -3,7 +3,6 @@
 from collections import Counter
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,7 +11,6 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import Forced, edge_count_of, kahler
 
-Positions = npt.NDArray[np.float64]
 Point = tuple[int, int, int]
 """A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
 Line = tuple[int, Point, Point]
