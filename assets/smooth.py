@@ -1,14 +1,8 @@
-"""Small functions of arrays: a smooth step, a bump, means of blocks."""
+"""Small functions of arrays: a bump, and means of blocks."""
 
 import numpy as np
 
 from ..geometry.arrays import Floats32, Floats64
-
-
-def smooth_step(low: float, high: float, values: Floats64) -> Floats64:
-    """Rise from 0 at `low` to 1 at `high`, with slope 0 at both ends."""
-    t = np.clip((values - low) / (high - low), 0.0, 1.0)
-    return t * t * (3.0 - 2.0 * t)
 
 
 def bump(values: Floats64, centre: float, width: float) -> Floats64:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers64
+from ..geometry.steps import smoothstep
 from .contact import PAIR_GAP, Grip, pair_lips
 from .eye_contact import watch_eyeballs
 from .foundation import Foundation, foundation_of
@@ -21,7 +22,6 @@ from .landmarks import (
     LOWER_INNER_LIP,
     UPPER_INNER_LIP,
     mouth_line,
-    smoothstep,
 )
 from .lids import Lids, place_lids
 from .muscle_forces import MuscleForces, build_muscle_forces

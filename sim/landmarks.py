@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers64
 
@@ -88,9 +87,3 @@ def mouth_line(landmarks: Floats64) -> Floats64:
     """The line between the inner lips, from corner to corner, (5, 3); landmarks: (68, 3)."""
     line: Floats64 = (landmarks[list(UPPER_INNER_LIP)] + landmarks[list(LOWER_INNER_LIP)]) / 2.0
     return line
-
-
-def smoothstep(x: npt.ArrayLike) -> Floats64:
-    """Return 0 for x below 0, 1 for x above 1, and 3x^2 - 2x^3 between."""
-    t = np.clip(np.asarray(x, dtype=np.float64), 0.0, 1.0)
-    return t * t * (3.0 - 2.0 * t)

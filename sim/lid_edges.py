@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32
-from .landmarks import smoothstep
+from ..geometry.steps import smoothstep
 from .polylines import polyline_distance
 from .rig import Eyes
 from .surface import SkinSurface

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32
-from .landmarks import smoothstep
+from ..geometry.steps import smoothstep
 from .lid_edges import LID_COLUMNS, LidAxes
 from .polylines import reached_along
 from .surface import SkinSurface

@@ -17,8 +17,8 @@ import numpy as np
 from ..geometry.arrays import Floats64, Integers32
 from ..geometry.directions import unit_vectors
 from ..geometry.normals import cross_products
+from ..geometry.steps import smoothstep
 from .eye_contact import EYE_CLEARANCE, barycentric_grid
-from .landmarks import smoothstep
 from .skull import Eyeball, ball_surface
 
 LIFT_TOLERANCE = 1e-3  # mm

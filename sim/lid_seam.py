@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
-from .landmarks import smoothstep
+from ..geometry.steps import smoothstep
 from .lid_edges import LID_COLUMNS, LidAxes
 from .lid_motion import LidVertices, shut_state
 from .surface import SkinSurface

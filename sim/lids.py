@@ -31,7 +31,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
-from .landmarks import EYE_LANDMARKS, smoothstep
+from ..geometry.steps import smoothstep
+from .landmarks import EYE_LANDMARKS
 from .lid_edges import LID_COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
 from .lid_fold import blended_turn, turn_above
 from .lid_lift import laid_on_ball, lift_off

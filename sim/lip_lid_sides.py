@@ -12,13 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.arrays import Floats64
+from ..geometry.steps import smoothstep
 from .landmarks import (
     EYE_LANDMARKS,
     INNER_CORNERS,
     LOWER_LIP_MIDDLE,
     UPPER_LIP_MIDDLE,
     Side,
-    smoothstep,
 )
 from .surface import SkinSurface
 

@@ -24,9 +24,9 @@ import scipy
 
 from ..geometry.arrays import Floats64, Integers64
 from ..geometry.polylines import arc_lengths
+from ..geometry.steps import smoothstep
 from . import checked
 from .coordinates import FaceSpace
-from .landmarks import smoothstep
 from .skull import RigidMotion
 
 SPINE_POINT_COUNT = 65  # number of points of the spine

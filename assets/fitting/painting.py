@@ -25,12 +25,12 @@ from ...geometry.closest import SurfacePoints
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import cross_products
 from ...geometry.sides import edges_of, side_lengths
+from ...geometry.steps import smoothstep
 from ...geometry.texels import Texels, rates
 from ..data_files import Image, read_arrays, read_image
 from ..errors import AssetError
 from ..model import Head, Segment, Wrinkles
 from ..pictures import LARGEST_SIDE, MeshPictures
-from ..smooth import smooth_step
 from .mesh_validation import SkinPiece
 
 MAP_SIZE = 1024  # [texels] width and height of maps that are drawn again
@@ -156,7 +156,7 @@ def _with_even_hair(known: Head, picture: Image) -> Image:
     share = np.asarray(mask.filter(softened)) / 255.0
     near = picture[rows].astype(np.float32)
     mean = np.asarray(PIL.Image.fromarray(picture[rows]).filter(softened))
-    strength = (1.0 - kept) * smooth_step(0.05, 0.4, share)[:, :, None]
+    strength = (1.0 - kept) * smoothstep(share, 0.05, 0.4)[:, :, None]
     even = picture.copy()
     even[rows] = (near + strength * (mean - near)).round()
     return even

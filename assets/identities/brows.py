@@ -19,8 +19,9 @@ import scipy
 from ...geometry.arrays import Floats32, Floats64
 from ...geometry.closest import MeshSearch
 from ...geometry.normals import cross_products
+from ...geometry.steps import smoothstep
 from ..loading import load
-from ..smooth import shrunk, smooth_step
+from ..smooth import shrunk
 
 SEGMENT_COUNT = 5  # straight segments of each hair
 
@@ -109,7 +110,7 @@ def _hairs(brows: Brows, random: np.random.Generator) -> Floats64:
     # Hairs stand upright at the inner end; farther outward they lie along the brow. Hairs above the
     # brow's centre line lean down to it.
     turn = np.radians(78.0) * np.exp(-along / 0.2) + np.radians(14.0)
-    turn -= np.radians(38.0) * smooth_step(0.08, 0.45, along) * smooth_step(-0.15, 0.3, across)
+    turn -= np.radians(38.0) * smoothstep(along, 0.08, 0.45) * smoothstep(across, -0.15, 0.3)
     disorder = 0.1 + 0.4 * brows.unruly * (1.0 - 0.6 * along)
     turn += disorder * random.normal(size=len(along))
     slope = np.arctan(line(x, 1))
@@ -201,7 +202,7 @@ def front_of_neck(size: int) -> Floats32:
     """
     across = np.abs(np.linspace(-0.5, 0.5, size))
     down = np.linspace(0.0, 1.0, size)[:, None]
-    front = (1.0 - smooth_step(0.26, 0.3, across)) * (1.0 - smooth_step(0.84, 0.93, down))
+    front = (1.0 - smoothstep(across, 0.26, 0.3)) * (1.0 - smoothstep(down, 0.84, 0.93))
     return np.asarray(front, np.float32)
 
 

@@ -16,10 +16,10 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64
 from ...geometry.colour import to_linear, to_screen
+from ...geometry.steps import smoothstep
 from ..data_files import read_arrays
 from ..loading import load
 from ..model import Eye, Part
-from ..smooth import smooth_step
 from .population import DARKEST_TONE, IRIS_FREQUENCIES, LIGHTEST_TONE, ONLY_BROWN
 
 
@@ -126,10 +126,10 @@ def _varied_iris(part: Part, eye: Eye, colours: Floats32, iris: Iris) -> Floats3
     grey = light @ np.array([0.2126, 0.7152, 0.0722])
     varied = light + iris.greyness * (grey[:, None] - light)
     ring_radii = 0.45, 0.75  # in radii of the iris: the ring begins to fade, and ends
-    ring = iris.ring * (1.0 - smooth_step(*ring_radii, aside))
+    ring = iris.ring * (1.0 - smoothstep(aside, *ring_radii))
     brown = np.array([1.25, 1.0, 0.65])
     edge_radii = 0.78, 0.96  # in radii of the iris: the dark edge begins, and is darkest
-    lighter = iris.lightness - iris.limbus * smooth_step(*edge_radii, aside)
+    lighter = iris.lightness - iris.limbus * smoothstep(aside, *edge_radii)
     lighter += iris.fibres * _fibres(part, eye, aside, iris.seed)
     tint = 1.0 + ring[:, None] * (brown - 1.0)
     varied *= 2.0 ** lighter[:, None] * tint

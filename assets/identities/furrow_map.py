@@ -15,10 +15,11 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Integers64
 from ...geometry.carving import carve
+from ...geometry.steps import smoothstep
 from ..data_files import Image
 from ..loading import load
 from ..model import Wrinkles
-from ..smooth import bump, shrunk, smooth_step
+from ..smooth import bump, shrunk
 from .furrows import (
     FEET_REACH,
     FOREHEAD_REACH,
@@ -173,12 +174,12 @@ def _brow_covers(place: Floats64) -> tuple[Floats64, Floats64]:
     """
     x, y, z = np.moveaxis(place, 2, 0)
     beside = np.abs(x)
-    brow = 26.5 + 2.0 * bump(beside, 32.0, 14.0) - 3.0 * smooth_step(42.0, 54.0, beside)
-    above = smooth_step(0.0, 7.0, y - brow) * smooth_step(74.0, 60.0, y)
-    above *= smooth_step(58.0, 36.0, beside) * smooth_step(40.0, 60.0, z)
-    above *= 1.0 - smooth_step(41.0, 36.0, y) * smooth_step(19.0, 12.0, beside)
-    between = smooth_step(9.0, 15.0, y) * smooth_step(36.0, 26.0, y)
-    between *= smooth_step(15.0, 9.0, beside)
+    brow = 26.5 + 2.0 * bump(beside, 32.0, 14.0) - 3.0 * smoothstep(beside, 42.0, 54.0)
+    above = smoothstep(y - brow, 0.0, 7.0) * smoothstep(y, 74.0, 60.0)
+    above *= smoothstep(beside, 58.0, 36.0) * smoothstep(z, 40.0, 60.0)
+    above *= 1.0 - smoothstep(y, 41.0, 36.0) * smoothstep(beside, 19.0, 12.0)
+    between = smoothstep(y, 9.0, 15.0) * smoothstep(y, 36.0, 26.0)
+    between *= smoothstep(beside, 15.0, 9.0)
     return above, between
 
 
@@ -204,10 +205,10 @@ def _fan_around_eyes(place: Floats64) -> _Fan:
     up = upward + 0.1 * level  # a fan sinks a little outward
     radius = np.hypot(level, up)
     angle = np.arctan2(up, level)
-    cover = smooth_step(10.5, 13.0, radius) * smooth_step(36.0, 30.0, radius)
-    cover *= smooth_step(-1.25, -0.85, angle) * smooth_step(0.75, 0.5, angle)
+    cover = smoothstep(radius, 10.5, 13.0) * smoothstep(radius, 36.0, 30.0)
+    cover *= smoothstep(angle, -1.25, -0.85) * smoothstep(angle, 0.75, 0.5)
     from_corner = np.hypot(beside - 42.9, y + 0.2)  # [mm] from the outer corner of the lids
-    cover *= smooth_step(1.2, 2.4, from_corner)
+    cover *= smoothstep(from_corner, 1.2, 2.4)
     return _Fan(cover, angle, radius, level)
 
 
@@ -217,8 +218,8 @@ def _fold_cover(place: Floats64) -> Floats64:
     head = load("head")
     ring = head.vertices[head.rings["nasolabial_fold_left"]]
     outside = np.abs(x) - np.interp(-y, -ring[:, 1], ring[:, 0])
-    cover = smooth_step(-9.0, -6.0, outside) * smooth_step(24.0, 18.0, outside)
-    cover *= smooth_step(-95.0, -88.0, y) * smooth_step(-31.0, -37.0, y)
+    cover = smoothstep(outside, -9.0, -6.0) * smoothstep(outside, 24.0, 18.0)
+    cover *= smoothstep(y, -95.0, -88.0) * smoothstep(y, -31.0, -37.0)
     return cover
 
 
@@ -228,7 +229,7 @@ def _remove_built_in_lines(near: Floats32, place: Floats64, fan: _Fan) -> None:
     near: bytes of the map, (h, w, 4), changed in place.
     """
     x, y, _ = np.moveaxis(place, 2, 0)
-    lowest = 9.5 + 11.0 * smooth_step(14.0, 20.0, np.abs(x))
+    lowest = 9.5 + 11.0 * smoothstep(np.abs(x), 14.0, 20.0)
     is_above = (y > lowest) & (y < FAR_AWAY)
     is_in_fan = (fan.radius > 8.0) & (fan.radius < 42.0) & (fan.angle > -1.4) & (fan.level > 0.0)
     in_first_slot = 1.0 - near[..., 3] / 255.0

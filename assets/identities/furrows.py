@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.arrays import Floats64
-from ..smooth import bump, smooth_step
+from ...geometry.steps import smoothstep
+from ..smooth import bump
 from .lines import ExpressionLines, Fan, Spread
 
 SAMPLE_SPACING = 0.5  # [mm] between samples along a line
@@ -53,7 +54,7 @@ def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[
     spacing = (highest - lowest) / lines.forehead
     spread = min(spacing, 11.0)
     middle = 0.5 * (highest + lowest) + random.uniform(-0.5, 0.5) * (spacing - spread)
-    arch = 1.0 - bump(x, 0.0, 16.0) - 0.8 * smooth_step(30.0, 58.0, np.abs(x))
+    arch = 1.0 - bump(x, 0.0, 16.0) - 0.8 * smoothstep(np.abs(x), 30.0, 58.0)
     tilt = random.normal(0.0, 0.015)
     course = lines.dip * arch + tilt * x + 0.8 * _random_curve(45.0, x, random)
     deepest = 0.44 * lines.forehead_depth * (4.5 / lines.forehead) ** 0.35  # [mm]
@@ -64,18 +65,18 @@ def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[
         own = place + course + 0.45 * _random_curve(26.0, x, random)
         shown = _line_strength(lines.spread, np.abs(x + random.normal(0.0, 4.0)), random)
         waves = (0.12 + 0.28 * lines.broken) * _random_curve(44.0, x, random)
-        whole = smooth_step(0.0, 1.0, 1.0 - 0.36 * lines.broken + waves)
+        whole = smoothstep(1.0 - 0.36 * lines.broken + waves, 0.0, 1.0)
         right_end, left_end = random.uniform(34.0, 54.0, 2)  # [mm] from the midline
         fading = 14.0  # [mm] over which a line fades at its ends
-        reach = smooth_step(-right_end, -right_end + fading, x)
-        reach = reach * smooth_step(left_end, left_end - fading, x)
+        reach = smoothstep(x, -right_end, -right_end + fading)
+        reach = reach * smoothstep(x, left_end, left_end - fading)
         depth = deepest * random.uniform(0.65, 1.0) * whole * reach * shown
         if random.random() < 0.25 + 0.5 * lines.broken:
             gap = random.uniform(-20.0, 20.0)
             over = random.uniform(2.0, 8.0)  # [mm] of overlap of both halves
             step = random.choice([-1.0, 1.0]) * random.uniform(0.15, 0.26) * spread
-            left = smooth_step(gap + over, gap - 5.0, x)
-            right = smooth_step(gap - over, gap + 5.0, x)
+            left = smoothstep(x, gap + over, gap - 5.0)
+            right = smoothstep(x, gap - over, gap + 5.0)
             parts = [(own + step, depth * left), (own - step, depth * right)]
         else:
             parts = [(own, depth)]
@@ -85,7 +86,7 @@ def forehead_lines(lines: ExpressionLines, random: np.random.Generator) -> list[
         own = random.uniform(lowest, highest) + course + 0.8 * _random_curve(20.0, x, random)
         centre = random.uniform(-35.0, 35.0)
         half = random.uniform(7.0, 18.0)
-        depth = 0.1 * lines.forehead_depth * smooth_step(half, 0.3 * half, np.abs(x - centre))
+        depth = 0.1 * lines.forehead_depth * smoothstep(np.abs(x - centre), half, 0.3 * half)
         found.append(FurrowLine(course=own, depth=depth, width=1.2, roll=1.8, swelling=0.2))
     return found
 
@@ -97,9 +98,9 @@ def _line_strength(spread: Spread, beside: Floats64, random: np.random.Generator
         case Spread.WHOLE:
             return np.ones_like(beside)
         case Spread.MIDDLE:
-            return smooth_step(40.0 * reach, 18.0 * reach, beside)
+            return smoothstep(beside, 40.0 * reach, 18.0 * reach)
         case Spread.SIDES:
-            return random.uniform(0.0, 0.3) + 0.7 * smooth_step(6.0 * reach, 28.0 * reach, beside)
+            return random.uniform(0.0, 0.3) + 0.7 * smoothstep(beside, 6.0 * reach, 28.0 * reach)
 
 
 def frown_lines(lines: ExpressionLines, random: np.random.Generator) -> list[FurrowLine]:
@@ -115,7 +116,7 @@ def frown_lines(lines: ExpressionLines, random: np.random.Generator) -> list[Fur
         own += 0.45 * _random_curve(18.0, y, random)
         low = random.uniform(8.0, 11.0)
         high = random.uniform(29.0, 37.0)
-        ends = smooth_step(low, low + 9.0, y) * smooth_step(high, high - 16.0, y)
+        ends = smoothstep(y, low, low + 9.0) * smoothstep(y, high, high - 16.0)
         factor = 1.0 if number == deepest else 1.0 - lines.uneven * random.uniform(0.6, 1.2)
         depth = deepest_of_all * factor * ends * (1.0 + 0.12 * _random_curve(14.0, y, random))
         found.append(FurrowLine(course=own, depth=depth, width=1.7, roll=4.4, swelling=0.8))
@@ -135,8 +136,8 @@ def crows_feet(lines: ExpressionLines, random: np.random.Generator) -> list[Furr
         own += 0.45 * _random_curve(16.0, radius, random) / radius
         start = begin + random.uniform(0.0, 3.0)
         end = begin + lines.reach * random.uniform(0.55, 1.0)
-        shown = smooth_step(start - 2.0, start + 5.0, radius)
-        shown = shown * smooth_step(end, start + 0.4 * (end - start), radius)
+        shown = smoothstep(radius, start - 2.0, start + 5.0)
+        shown = shown * smoothstep(radius, end, start + 0.4 * (end - start))
         depth = 0.3 * lines.feet_depth * random.uniform(0.55, 1.0) * shown
         depth *= 1.0 + 0.15 * _random_curve(9.0, radius, random)
         roll = float(np.clip(10.0 * wide, 1.4, 2.4))
@@ -144,7 +145,7 @@ def crows_feet(lines: ExpressionLines, random: np.random.Generator) -> list[Furr
         if random.random() < 0.3:
             fork = start + random.uniform(4.0, 8.0)
             away = random.choice([-1.0, 1.0]) * 0.018 * np.maximum(radius - fork, 0.0)
-            branch = 0.6 * depth * smooth_step(fork - 1.0, fork + 3.0, radius)
+            branch = 0.6 * depth * smoothstep(radius, fork - 1.0, fork + 3.0)
             found.append(
                 FurrowLine(course=own + away, depth=branch, width=0.9, roll=1.4, swelling=0.8)
             )

@@ -20,8 +20,8 @@ from ...geometry.arrays import Flags, Floats32, Floats64, Integers32, Integers64
 from ...geometry.closest import closest_points
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
+from ...geometry.steps import smoothstep
 from ..model import Part
-from ..smooth import smooth_step
 from ..topology import quarter
 from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 
@@ -132,11 +132,11 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     # Distances behind the hairline [mm]: up to the first hair lies flat, from the second it stands
     # off by the cut's lift.
     flat_depths = 0.0, 24.0 if cut.knot else 45.0
-    lift = cut.lift * smooth_step(*flat_depths, behind)[:, None]
+    lift = cut.lift * smoothstep(behind, *flat_depths)[:, None]
     whorl_radius = 30.0  # [mm]; strands within it stand up and do not shine
-    aside = smooth_step(0.0, whorl_radius, radius * away)[:, None]
+    aside = smoothstep(radius * away, 0.0, whorl_radius)[:, None]
     way = long[:, None] * (lift * normals + aside * np.sqrt(1.0 - lift**2) * comb)
-    way += (covers * smooth_step(0.0, 25.0, behind))[:, None] * normals
+    way += (covers * smoothstep(behind, 0.0, 25.0))[:, None] * normals
     way = _over_skin(way, points, normals, scalp, long)
     off = _heights_of_roots(cut, behind, points[:, 2] - middle[2], covers)
     points = points + off[:, None] * normals
@@ -147,7 +147,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (LENGTHWISE_FACTOR if cut.knot else 1.0) * radius * away
     rise = (way * normals).sum(axis=1)
-    fray = smooth_step(*FRAYED_RISES, rise) * smooth_step(0.5 * cut.behind, cut.behind, behind)
+    fray = smoothstep(rise, *FRAYED_RISES) * smoothstep(behind, 0.5 * cut.behind, cut.behind)
     if cut.knot:
         fray[:] = 0.0
     striation = np.column_stack([radius * angle, along, way, dense, fray])
@@ -180,16 +180,14 @@ def _heights_of_roots(cut: Cut, behind: Floats64, ahead: Floats64, covers: Float
     """
     clearance = 0.5  # [mm]
     sinking = 0.3  # [mm] of depth per mm; the surface dips below the skin 4 mm before the hairline
-    off = clearance * smooth_step(-2.0, 8.0, behind) + sinking * np.minimum(behind + 4.0, 0.0)
+    off = clearance * smoothstep(behind, -2.0, 8.0) + sinking * np.minimum(behind + 4.0, 0.0)
     if cut.knot:  # else light passes between nape and hair that is seen edge-on
         nape_depth = 20.0  # [mm] behind the head's centre, where hair begins below the skin
         is_nape = ahead < -nape_depth
-        off -= 0.8 * smooth_step(30.0, 10.0, behind) * is_nape
+        off -= 0.8 * smoothstep(behind, 30.0, 10.0) * is_nape
         # Coarse triangles of the hollow nape would hide corners of the hair.
         hollow_depth = 45.0  # [mm] behind the head's centre, behind the grooves at ears
-        off += (
-            covers * smooth_step(0.0, 8.0, behind) * smooth_step(nape_depth, hollow_depth, -ahead)
-        )
+        off += covers * smoothstep(behind, 0.0, 8.0) * smoothstep(-ahead, nape_depth, hollow_depth)
     return np.asarray(off)
 
 
@@ -287,8 +285,8 @@ def _turned_around_whorl(
 def _lengths(cut: Cut, points: Floats64, normals: Floats64, behind: Floats64) -> Floats64:
     """Return lengths of strands [mm], (n,); they are uneven, as if cut by hand."""
     uneven_fraction = 0.0 if cut.knot else 0.06
-    long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
-    long *= smooth_step(0.0, cut.behind, behind) * (
+    long = cut.sides + (cut.top - cut.sides) * smoothstep(normals[:, 1], 0.1, 0.7)
+    long *= smoothstep(behind, 0.0, cut.behind) * (
         1.0 + uneven_fraction * waves(points, 0.21)[:, 0]
     )
     return np.asarray(long)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.arrays import Floats32
-from ..smooth import smooth_step
+from ...geometry.steps import smoothstep
 
 NO_RECESSION_AGE = 25.0  # [years] up to which no hairline has receded
 
@@ -36,7 +36,7 @@ class Hairline:
         # Real hairlines are uneven, so each person's has other notches and tongues.
         turn = self.front + self.temples
         row += 1.3 * np.sin(107.0 * across + turn) + 1.1 * np.sin(241.0 * across + 3.0 * turn)
-        ahead = 1.0 - smooth_step(0.74, 0.82, up)
+        ahead = 1.0 - smoothstep(up, 0.74, 0.82)
         bald_depth = 40.0  # [mm] that a wholly bald crown shifts the hairline
         beside = self.crown * bald_depth * np.exp(-((across / 0.14) ** 2))
         top = np.exp(-(((up - 0.78) / 0.15) ** 2))
@@ -45,7 +45,7 @@ class Hairline:
         whole += np.multiply.outer(top[rows], beside)
         if self.tied:
             # At the crown and on sideburns hair is dense, or has its place.
-            before = 1.0 - smooth_step(0.8, 0.95, up[rows])
+            before = 1.0 - smoothstep(up[rows], 0.8, 0.95)
             within = np.exp(-((across / 0.25) ** 4))
             whole -= np.multiply.outer(self.tied * before, within).astype(np.float32)
         return np.asarray(whole, np.float32)

@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 
 from ...geometry.arrays import Floats64
+from ...geometry.steps import smoothstep
 from ...geometry.texels import Texels
 from ..loading import load
-from ..smooth import smooth_step
 from .person import Person
 from .relief import Relief, relief_of, texels_of
 
@@ -30,7 +30,7 @@ def larynx_of(person: Person, size: int) -> Relief:
     up = y - throat + below  # [mm] from the middle of the larynx
     notch = 0.25 * np.exp(-((x / 3.5) ** 2) - ((up - 6.0) / 4.0) ** 2)
     ridge = np.exp(-((x / half_width) ** 2) - (up / half_height) ** 2)
-    inside = smooth_step(0.0, 0.35, ridge)  # a steeper end would be a rim in oblique light
+    inside = smoothstep(ridge, 0.0, 0.35)  # a steeper end would be a rim in oblique light
     heights: Floats64 = person.identity.larynx * inside * (ridge - notch)
     return relief_of(texels, heights, np.ones_like(heights))
 

@@ -19,10 +19,11 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats32, Floats64
+from ...geometry.steps import smoothstep
 from ...geometry.texels import Texels
 from ..loading import load
 from ..model import Wrinkles
-from ..smooth import bump, smooth_step
+from ..smooth import bump
 from .person import Person
 from .relief import Relief, add_to, relief_of, texels_of
 
@@ -96,21 +97,21 @@ def fold_of(person: Person, side: str, size: int) -> Relief:
     offset = places - near.edge_weights @ _lid_edge(person.vertices, side)
     away = np.sqrt((offset**2).sum(axis=1))
     upward = offset[:, 1] / np.maximum(away, 0.1)
-    is_lid = smooth_step(0.15, 0.6, upward) * smooth_step(0.03, 0.15, along)
+    is_lid = smoothstep(upward, 0.15, 0.6) * smoothstep(along, 0.03, 0.15)
     arch = 0.35 + 0.65 * np.sin(np.pi * np.clip(0.1 + 0.75 * along, 0.0, 1.0))
     identity = person.identity
-    seen = identity.seen_lid * arch - identity.hooding * smooth_step(0.35, 1.0, along)
+    seen = identity.seen_lid * arch - identity.hooding * smoothstep(along, 0.35, 1.0)
     above = away - np.maximum(seen, 0.0)  # the crease
     # Heights of visible skin [mm]: the fold hides the whole crease, or nothing of it.
-    shows = is_lid * smooth_step(-0.2, 0.5, seen)
+    shows = is_lid * smoothstep(seen, -0.2, 0.5)
     groove_width = 0.6  # [mm]
     groove = bump(above, 0.0, groove_width) * shows
-    hangs = smooth_step(-0.1, 1.3, above) * (1.0 - smooth_step(2.0, 7.0, above)) * is_lid
+    hangs = smoothstep(above, -0.1, 1.3) * (1.0 - smoothstep(above, 2.0, 7.0)) * is_lid
     groove_depth = 0.2  # [mm]
     fold_height = 0.55 + 0.25 * identity.hooding  # [mm]
     crease_dark = 0.4  # fraction of ambient light that a crease loses
     below_dark = 0.2  # fraction of ambient light that the skin below a fold loses
-    below = shows * (1.0 - smooth_step(-1.2, 0.3, above)) * smooth_step(0.0, 0.4, away)
+    below = shows * (1.0 - smoothstep(above, -1.2, 0.3)) * smoothstep(away, 0.0, 0.4)
     heights = fold_height * hangs - groove_depth * groove
     return relief_of(texels, heights, 1.0 - crease_dark * groove - below_dark * below)
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from ...geometry.arrays import Floats32, Floats64, Integers32, Integers64
 from ...geometry.directions import unit_vectors
+from ...geometry.steps import smoothstep
 from ..model import Part
-from ..smooth import smooth_step
 
 MEAN_PLACE = 0.6  # fraction of a strand's length at which vertices of layers lie
 STATION_COUNT = 3  # points along a lock: root, middle and tip
@@ -215,7 +215,7 @@ def _rise_around_whorl(rise: Floats64, away: Floats64) -> Floats64:
     Layers also stand up in the hollow of the nape, where upright locks would look like thorns.
     rise: sine of the angle between strands and skin. away: distance from the whorl [mm].
     """
-    return np.asarray(np.clip(rise - 0.6, 0.0, 0.4) * smooth_step(45.0, 30.0, away))
+    return np.asarray(np.clip(rise - 0.6, 0.0, 0.4) * smoothstep(away, 45.0, 30.0))
 
 
 def _dot(first: Floats64, second: Floats64) -> Floats64:

@@ -16,8 +16,8 @@ import scipy
 from ...geometry.arrays import Floats64
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
+from ...geometry.steps import smoothstep
 from ..model import Part
-from ..smooth import smooth_step
 from ..topology import grid_faces
 from . import hair as short
 from .hair import HAIR_NAME, Cut, Fall, Scalp, from_within
@@ -149,7 +149,7 @@ def _slide_of(along: Floats64) -> Floats64:
     halves would meet there in a hard edge, one side bright and the other dark.
     """
     rising_length = 40.0  # [mm]
-    return np.asarray(LAYER_SLIDE * smooth_step(0.0, rising_length, along))
+    return np.asarray(LAYER_SLIDE * smoothstep(along, 0.0, rising_length))
 
 
 def _curved_tips(height: Floats64, *, ears_end: float, ends: Floats64) -> tuple[Floats64, Floats64]:
@@ -212,13 +212,13 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         root_depth = 12.0  # [mm] below the scalp, where a tail begins
         free_distance = 75.0  # [mm] from the beginning of a tail to its full width
         tie_distance = 28.0  # [mm] from the beginning of a tail to its tie
-        free = smooth_step(tie_distance, free_distance, far)
+        free = smoothstep(far, tie_distance, free_distance)
         directions = _falling_ways(far, out, cut.aside, root_depth, free_distance)
         line = root - root_depth * out + np.cumsum(directions * far[1], axis=0)
         tied_width = 0.45  # thickness at the tie, as a fraction of the full thickness
         thick = tied_width + (1.0 - tied_width) * free
         root_width = 1.0  # thickness on the scalp, as a fraction of the full thickness
-        thick += (root_width - tied_width) * (1.0 - smooth_step(0.0, tie_distance, far))
+        thick += (root_width - tied_width) * (1.0 - smoothstep(far, 0.0, tie_distance))
         thick *= 1.0 - 0.55 * t**2 - 0.4 * t**8
         shade = np.exp(-(((far - tie_distance) / 5.0) ** 2))
         tail_hem = 28.0  # [mm] over which tips thin out
@@ -236,7 +236,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[
         dimple_depth = 0.12  # fraction of half the knot's width
         height = knot_height * (np.sin(rise) + 0.5) - dimple_depth * np.exp(-((3.0 * thick) ** 2))
         line = root + cut.knot * height * out
-        shade = smooth_step(-0.3, -1.0, rise)
+        shade = smoothstep(rise, -0.3, -1.0)
         dense = FULL_DENSITY + 0.0 * t
         knot = (3, 13.0, 0.1, 1.8)
         count, wide, deep, turns = knot
@@ -266,9 +266,9 @@ def _falling_ways(
     far: distances along the tail [mm], (n, 1). out: outward unit vector, (3,). aside: see `Cut`.
     first, last: distances between which the tail bends [mm].
     """
-    bent = smooth_step(first, last, far)
+    bent = smoothstep(far, first, last)
     straight_distances = 95.0, 190.0  # [mm] between which the sideways fall ends
-    sideways = aside * (1.0 - smooth_step(*straight_distances, far))
+    sideways = aside * (1.0 - smoothstep(far, *straight_distances))
     return unit_vectors((1.0 - bent) * out + bent * (DOWN_AXIS - sideways * RIGHT_AXIS))
 
 

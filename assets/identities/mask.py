@@ -14,8 +14,8 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
+from ...geometry.steps import smoothstep
 from ..model import MASK_NAME, Part
-from ..smooth import smooth_step
 from .person import Person
 from .wires import Colour, Tube, beside_head, joined, sheet, tube
 
@@ -105,7 +105,7 @@ def _sheet_places(person: Person) -> tuple[Floats64, Floats64]:
     bridge = float(landmarks[28, 1])
     chin = float(landmarks[8, 1])
     corner = float(landmarks[48, 1])
-    top = bridge + (ear - 15.0 - bridge) * smooth_step(0.1, 0.95, np.abs(across))
+    top = bridge + (ear - 15.0 - bridge) * smoothstep(np.abs(across), 0.1, 0.95)
     bottom = chin - 6.0 + (corner - 12.0 - chin + 6.0) * np.abs(across) ** 2.6
     down = np.linspace(0.0, 1.0, MASK_SHAPE[0])[:, None]
     height = top + down * (bottom - top)
@@ -168,7 +168,7 @@ def _pleats(down: Floats64, aside: Floats64) -> tuple[Floats64, Floats64]:
     place = (down - 0.28) / 0.5 * count  # number of pleats above
     in_pleat = place % 1.0
     phase = np.where((place > 0.0) & (place < count), in_pleat, 0.0)
-    flat = smooth_step(1.0, 0.7, aside)
+    flat = smoothstep(aside, 1.0, 0.7)
     height = 1.5 * phase * flat
     is_crease = (place > 0.0) & (place <= count + 0.15) & (in_pleat < 0.14)
     return height, is_crease * (0.35 + 0.65 * flat)

@@ -13,8 +13,8 @@ import scipy
 
 from ...geometry.arrays import Floats64
 from ...geometry.sides import edges_of
+from ...geometry.steps import smoothstep
 from ..loading import load
-from ..smooth import smooth_step
 
 
 def evened_neck(vertices: Floats64) -> Floats64:
@@ -43,7 +43,7 @@ def _neck() -> tuple[scipy.sparse.csr_array, Floats64]:
     weights = scipy.sparse.csr_array((np.tile(near, 2), (rows, columns)), (len(x), len(x)))
     means = scipy.sparse.diags_array(1.0 / np.maximum(weights.sum(axis=1), 1e-9)) @ weights
     below = below_jaw(x, x[head.anatomy["menton"]])
-    shares = smooth_step(0.0, 25.0, below) * smooth_step(75.0, 50.0, below)  # collars fit below
+    shares = smoothstep(below, 0.0, 25.0) * smoothstep(below, 75.0, 50.0)  # collars fit below
     return means.tocsr(), shares[:, None]
 
 

@@ -19,6 +19,7 @@ import scipy
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.intersections import self_intersections
 from ...geometry.normals import cross_products, vertex_normals
+from ...geometry.steps import smoothstep
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
@@ -28,7 +29,6 @@ from ..fitting.warp import Similarity, ThinPlateSpline
 from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of
-from ..smooth import smooth_step
 from .necks import below_jaw, evened_neck
 from .smiles import smiling
 from .sockets import without_ridges
@@ -173,7 +173,7 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     # [mm] below the jaw over which narrowing begins. It gives 322 to 338 mm around the larynx;
     # within 30 mm, necks of women would have a corner behind the jaw.
     fade_height = 60.0
-    narrower = narrowing * (sex is Sex.WOMAN) * smooth_step(0.0, fade_height, below)
+    narrower = narrowing * (sex is Sex.WOMAN) * smoothstep(below, 0.0, fade_height)
     neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
     return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))
 

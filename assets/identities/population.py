@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..smooth import smooth_step
+from ...geometry.steps import smoothstep
 
 LIGHTEST_TONE = 70.0  # individual typology angle of skin, ITA [deg]
 DARKEST_TONE = -55.0
@@ -85,7 +85,7 @@ def drawn_irises(
     weights = {}
     for name, frequency in frequencies.items():
         none, full = fades.get(name, pale_fade)
-        weights[name] = frequency * float(smooth_step(none, full, np.array(angle)))
+        weights[name] = frequency * float(smoothstep(np.array(angle), none, full))
     total = sum(frequencies.values())
     weights["brown"] = weights.get("brown", 0.0) + total - sum(weights.values())
     chances = np.array(list(weights.values())) / total

@@ -18,8 +18,8 @@ import scipy
 from ...geometry.arrays import Floats64
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
+from ...geometry.steps import smoothstep
 from ..model import Part
-from ..smooth import smooth_step
 from ..topology import grid_faces
 from .wires import Colour, Tube, joined, sheet
 
@@ -121,7 +121,7 @@ def _shirt_with_wings(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Cl
     opening = 0.35 + 3.6 * down**0.6  # columns between the midline and each edge of the collar
     columns = opening + along * (SHIRT_COLUMNS - 2.0 * opening)
     from_front = np.minimum(columns, SHIRT_COLUMNS - columns)
-    length = 37.0 + 24.0 * smooth_step(9.0, 0.0, from_front)
+    length = 37.0 + 24.0 * smoothstep(from_front, 9.0, 0.0)
     fold = surface.down(columns, np.zeros_like(columns))
     hem = surface.down(columns, length) + 2.6 * surface.outward(columns, length)
     lift = np.array([0.0, 2.2, 0.0])  # [mm]; height of the fold above the band

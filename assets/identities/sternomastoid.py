@@ -12,8 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from ...geometry.steps import smoothstep
 from ..loading import load
-from ..smooth import bump, smooth_step
+from ..smooth import bump
 from .person import Person
 from .relief import Relief, relief_of, texels_of
 
@@ -62,10 +63,10 @@ def _belly_and_tendon(size: int, side: float) -> tuple[Relief, Relief]:
     belly_width = 8.5  # [mm]
     belly = bump(off, 0.0, belly_width)
     # The tendon lies at the front edge of the belly, near the breastbone.
-    tendon = 0.7 * bump(off, 6.5, 3.4) * smooth_step(-108.0, -140.0, y)
-    hollow = 0.5 * bump(off, 14.5, 5.0) * smooth_step(-100.0, -125.0, y)
-    inside = smooth_step(-62.0, -92.0, y) * smooth_step(75.0, 60.0, z)
-    inside *= smooth_step(-24.0, -14.0, off) * smooth_step(-158.0, -148.0, y)
+    tendon = 0.7 * bump(off, 6.5, 3.4) * smoothstep(y, -108.0, -140.0)
+    hollow = 0.5 * bump(off, 14.5, 5.0) * smoothstep(y, -100.0, -125.0)
+    inside = smoothstep(y, -62.0, -92.0) * smoothstep(z, 75.0, 60.0)
+    inside *= smoothstep(off, -24.0, -14.0) * smoothstep(y, -158.0, -148.0)
     kept = inside * (belly + np.abs(tendon - hollow)) > 2e-3
     texels = texels.only(kept)
     light = np.ones(len(texels.rows))

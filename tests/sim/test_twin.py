@@ -7,10 +7,10 @@ import pytest
 from numpy.linalg import norm
 
 from risorius import sim
+from risorius.geometry.steps import smoothstep
 from risorius.sim.contact import Grip
 from risorius.sim.eye_contact import watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLE_COUNT, contract
-from risorius.sim.landmarks import smoothstep
 from risorius.sim.lid_motion import turn_lids
 from risorius.sim.muscles import place_muscles
 from risorius.sim.rig import LinearMuscle, RingMuscle
