@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
-from ..geometry.sides import different_pairs, sides_of
+from ..geometry.sides import border_edges, different_pairs, numbered_edges, sides_of
 
 Edge = tuple[int, int]
 
@@ -67,8 +67,7 @@ def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
 
 def border_vertices(faces: Integers32) -> Integers64:
     """Indices of the vertices on edges with one face, in ascending order."""
-    edges, numbers = different_pairs(np.sort(sides_of(faces), axis=1))
-    return np.unique(edges[np.bincount(numbers) == 1])
+    return np.unique(border_edges(faces))
 
 
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Integers32:
@@ -104,8 +103,7 @@ def quarter(faces: Integers32, vertex_count: int) -> Quartered:
          / \\ / \\
         a---ab--b
     """
-    sides = np.sort(sides_of(faces), axis=1)
-    edges, number = different_pairs(sides)
+    edges, number = numbered_edges(faces)
     ab, bc, ca = vertex_count + number.reshape(3, -1)
     a, b, c = faces.T
     at_a = np.stack([a, ab, ca], axis=1)
@@ -122,7 +120,7 @@ def is_manifold(faces: Integers32) -> bool:
     distinct_sides, _ = different_pairs(sides)
     if len(distinct_sides) < len(sides):
         return False
-    _, edge = different_pairs(np.sort(sides, axis=1))
+    _, edge = numbered_edges(faces)
     faces_at_edge = np.bincount(edge)
     return bool(faces_at_edge.max(initial=0) <= 2)
 

@@ -26,6 +26,7 @@ from risorius.assets.data_files import read_toml
 from risorius.geometry.arrays import Flags, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products, vertex_normals
+from risorius.geometry.sides import edges_of
 
 from .report import table
 from .subjects import settled_positions
@@ -148,9 +149,7 @@ def search(
     most_rounds = 3
     for turn in range(most_rounds):
         before = best
-        edges = trimesh.geometry.faces_to_edges(present.triangles)
-        edges = np.unique(np.sort(edges, axis=1), axis=0)
-        for first, second in np.random.default_rng(turn).permutation(edges):
+        for first, second in np.random.default_rng(turn).permutation(edges_of(present.triangles)):
             tried = with_flipped_edge(present, int(first), int(second))
             if tried is None or not _is_sound(tried, present, known, outward):
                 continue

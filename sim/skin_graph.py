@@ -18,7 +18,7 @@ from scipy.sparse import linalg as sparse_linalg
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.read_only import read_only
-from ..geometry.sides import different_pairs, sides_of
+from ..geometry.sides import numbered_edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def graph_of(faces: Integers32, vertex_count: int) -> SkinGraph:
 def _graph_of(faces: bytes, vertex_count: int) -> SkinGraph:
     """Find the edges, and an order of vertices; faces: bytes of triangles (F, 3), int32."""
     triangles = np.frombuffer(faces, np.int32).reshape(-1, 3)
-    pairs, edge_of_side = different_pairs(np.sort(sides_of(triangles), axis=1))
+    pairs, edge_of_side = numbered_edges(triangles)
     edges: Integers32 = pairs.astype(np.int32)
     neighbours = _edge_number_matrix(edges, np.zeros(0, np.int32), vertex_count)
     # Any matrix of this pattern gives the order, because the values do not matter.

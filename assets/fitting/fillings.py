@@ -18,7 +18,7 @@ from ...geometry.arrays import Flags, Floats64, Integers, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.normals import cross_products
 from ...geometry.polylines import arc_lengths
-from ...geometry.sides import different_pairs, sides_of
+from ...geometry.sides import border_edges, different_pairs, edges_of, numbered_edges, sides_of
 from ..loading import load
 from ..meshes import Mesh
 from .face_place import placed
@@ -190,9 +190,9 @@ def _between_paths(
         if path is None:
             return none
         steps.append(np.column_stack([path[:-1], path[1:]]))
-    border = np.sort(np.concatenate(steps), axis=1)
-    sides = np.sort(sides_of(faces[near]), axis=1)
-    _, number = different_pairs(np.concatenate([border, sides]))
+    border = np.concatenate(steps)
+    sides = np.concatenate([border, sides_of(faces[near])])
+    _, number = different_pairs(np.sort(sides, axis=1))
     of_sides = number[len(border) :]
     inner = np.flatnonzero(~np.isin(of_sides, number[: len(border)]))
     owner = np.tile(np.arange(len(near)), 3)[inner]
@@ -209,9 +209,8 @@ def _without_teeth(faces: Integers32, found: Integers) -> Integers:
     """Return the largest connected part of a sheet, without triangles attached by one side."""
     most_passes = 5
     for _ in range(most_passes):
-        sides = np.sort(sides_of(faces[found]), axis=1)
-        _, number, uses = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-        is_shared = (uses[number.ravel()] == 2).reshape(3, -1)
+        _, number = numbered_edges(faces[found])
+        is_shared = (np.bincount(number)[number] == 2).reshape(3, -1)
         is_held = is_shared.sum(axis=0) > 1
         if is_held.all():
             break
@@ -228,25 +227,18 @@ def _is_disc(faces: Integers32) -> bool:
     """Whether triangles form a disc: one sheet with one border that passes no vertex twice."""
     if not len(faces):
         return False
-    edges, border = _edges_and_border(faces)
+    border = border_edges(faces)
     is_simple = len(border) == len(np.unique(border))
-    euler_characteristic = len(np.unique(faces)) - len(edges) + len(faces)
+    euler_characteristic = len(np.unique(faces)) - len(edges_of(faces)) + len(faces)
     return is_simple and euler_characteristic == 1
 
 
 def _is_polygon(faces: Integers32) -> bool:
     """Whether triangles form one polygon with all corners on its edge."""
-    _, border = _edges_and_border(faces)
+    border = border_edges(faces)
     count = len(faces) + 2  # corners and sides of a polygon with this many triangles
     counts = (len(border), len(np.unique(border)), len(np.unique(faces)))
     return len(faces) > 0 and counts == (count, count, count)
-
-
-def _edges_and_border(faces: Integers32) -> tuple[Integers, Integers]:
-    """Return the edges of triangles, (n, 2), and those with one triangle, (m, 2)."""
-    sides = np.sort(sides_of(faces), axis=1)
-    edges, uses = np.unique(sides, axis=0, return_counts=True)
-    return edges, edges[uses == 1]
 
 
 def _is_inside(points: Floats64, polygon: Floats64) -> Flags:

@@ -15,7 +15,7 @@ from scipy.sparse import csgraph
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32, Integers64
 from ...geometry.mesh_graph import length_graph, path_lengths, path_to, pieces_of
-from ...geometry.sides import side_lengths, sides_of
+from ...geometry.sides import border_edges, different_pairs, numbered_edges, side_lengths, sides_of
 from ..errors import AssetError
 from ..topology import border_vertices, unique_points
 
@@ -149,17 +149,18 @@ def _names_twice(faces: Integers32) -> Flags:
 
 def check_manifold(faces: Integers32) -> None:
     """Raise AssetError unless each edge has one triangle, or two with equal orientation."""
-    directed = sides_of(faces)
-    edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
+    edges, edge_of_side = numbered_edges(faces)
+    uses = np.bincount(edge_of_side)
     if (uses > 2).any():
         a, b = edges[uses.argmax()]
         raise AssetError(
             f"the mesh is not manifold: {uses.max()} triangles meet at the edge of its vertices "
             f"{a} and {b}; remove doubled faces and inner walls"
         )
-    half_edges, uses = np.unique(directed, axis=0, return_counts=True)
+    sides, number = different_pairs(sides_of(faces))
+    uses = np.bincount(number)
     if (uses > 1).any():
-        a, b = half_edges[uses.argmax()]
+        a, b = sides[uses.argmax()]
         raise AssetError(
             f"the mesh is not oriented: both triangles at the edge of its vertices {a} and {b} run "
             "along it in the same direction; make its normals agree"
@@ -313,9 +314,7 @@ def rim_behind(skin: SkinPiece, is_edge: Flags, is_behind: Flags) -> Flags:
 def _border_length(skin: SkinPiece, is_removed: Flags) -> float:
     """Return the length of the borders of a skin [mm] without some of its vertices, (V,)."""
     loses_corner = is_removed[skin.faces].any(axis=1)
-    sides = np.sort(sides_of(skin.faces[~loses_corner]), axis=1)
-    edges, uses = np.unique(sides, axis=0, return_counts=True)
-    border = edges[uses == 1]
+    border = border_edges(skin.faces[~loses_corner])
     return float(side_lengths(skin.vertices, border).sum())
 
 

@@ -11,7 +11,7 @@ import scipy
 from ...geometry.arrays import Flags, Floats32, Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.read_only import make_read_only
-from ...geometry.sides import different_pairs, sides_of
+from ...geometry.sides import numbered_edges, sides_of
 from ..errors import AssetError
 from ..model import Eye, Layer, Part
 from ..topology import border_vertices, collapsed, is_manifold
@@ -115,7 +115,7 @@ def unpinched(vertices: Floats64, faces: Integers32) -> tuple[Floats64, Integers
     were attached only by pinched edges.
     """
     sides = sides_of(faces)
-    _, edge = different_pairs(np.sort(sides, axis=1))
+    _, edge = numbered_edges(faces)
     uses = np.bincount(edge)
     if uses.max() <= 2:
         return vertices, faces

@@ -22,9 +22,24 @@ def different_pairs(pairs: Integers) -> tuple[Integers64, Integers64]:
     return np.column_stack(np.divmod(keys, span)), numbers.astype(np.int64)
 
 
+def numbered_edges(faces: Integers) -> tuple[Integers64, Integers64]:
+    """Return the edges of triangles (F, 3), as `edges_of` does, and the edge of each side, (3 F,).
+
+    The sides are in the order of `sides_of`.
+    """
+    return different_pairs(np.sort(sides_of(faces), axis=1))
+
+
 def edges_of(faces: Integers) -> Integers64:
     """The edges of triangles (F, 3), each once, the lower vertex first, sorted, shape (E, 2)."""
-    return different_pairs(np.sort(sides_of(faces), axis=1))[0]
+    return numbered_edges(faces)[0]
+
+
+def border_edges(faces: Integers) -> Integers64:
+    """Those of `edges_of` that have a single triangle, shape (n, 2)."""
+    edges, numbers = numbered_edges(faces)
+    found: Integers64 = edges[np.bincount(numbers) == 1]
+    return found
 
 
 def side_lengths(vertices: Floats64, sides: Integers) -> Floats64:

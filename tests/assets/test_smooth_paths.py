@@ -10,7 +10,7 @@ from risorius.assets.meshes import Mesh
 from risorius.assets.sheets import make_grid
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
-from risorius.geometry.sides import sides_of
+from risorius.geometry.sides import border_edges
 
 from ..heads import masked
 
@@ -67,9 +67,7 @@ def test_covered_eyes_of_a_scan_get_smooth_openings():
         centre = marks[eye].mean(axis=0)
         middles = mesh.vertices[mesh.faces[found.triangles]].mean(axis=1)
         sheet = mesh.faces[found.triangles[norm(middles - centre, axis=1) < 25.0]]
-        sides = np.sort(sides_of(sheet), axis=1)
-        border, uses = np.unique(sides, axis=0, return_counts=True)
-        border = border[uses == 1]
+        border = border_edges(sheet)
         around = [int(border[0, 0]), int(border[0, 1])]
         while around[-1] != around[0]:
             links = border[(border == around[-1]).any(axis=1)]

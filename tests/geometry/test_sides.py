@@ -2,7 +2,14 @@
 
 import numpy as np
 
-from risorius.geometry.sides import different_pairs, side_lengths, sides_of
+from risorius.geometry.sides import (
+    border_edges,
+    different_pairs,
+    edges_of,
+    numbered_edges,
+    side_lengths,
+    sides_of,
+)
 
 
 def test_different_pairs_are_those_of_unique_rows():
@@ -20,3 +27,15 @@ def test_side_lengths_are_distances_of_their_ends():
     vertices = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 4.0]])
     lengths = side_lengths(vertices, sides_of(np.array([[0, 1, 2]])))
     assert lengths.tolist() == [3.0, 5.0, 4.0]
+
+
+def test_edges_of_two_triangles():
+    """Their common edge counts once, has both sides, and is no border."""
+    faces = np.array([[0, 1, 2], [3, 2, 1]])
+    edges, number_of_side = numbered_edges(faces)
+    assert edges.tolist() == [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
+    # Sides: 0-1 and 3-2, then 1-2 and 2-1, then 2-0 and 1-3.
+    assert number_of_side.tolist() == [0, 4, 2, 2, 1, 3]
+    assert edges_of(faces).tolist() == edges.tolist()
+    assert border_edges(faces).tolist() == [[0, 1], [0, 2], [1, 3], [2, 3]]
+    assert border_edges(faces[:0]).shape == (0, 2)

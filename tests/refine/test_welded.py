@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from risorius import refine
+from risorius.geometry.sides import border_edges
 from risorius.refine.mesh.seams import number_places
 from tests import meshes
 from tests.refine.cases import Forced, GivenMetric
@@ -81,9 +82,8 @@ def box():
 def heights_of_borders(mesh):
     """Heights of the edges that belong to one triangle only; vertices at one place count as one."""
     places, number = np.unique(mesh.positions, axis=0, return_inverse=True)
-    sides = number.reshape(-1)[mesh.triangles[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2)
-    sides, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
-    return set(places[sides[counts == 1], 2].ravel().tolist())
+    border = border_edges(number.reshape(-1)[mesh.triangles])
+    return set(places[border, 2].ravel().tolist())
 
 
 @pytest.mark.parametrize("seams", [False, True])
