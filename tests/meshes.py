@@ -11,6 +11,7 @@ import trimesh
 from numpy.linalg import norm
 
 from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def ball(levels: int = 2) -> Mesh:
     faces = octahedron().faces
     for _ in range(levels):
         vertices, faces = trimesh.remesh.subdivide(vertices, faces)
-        vertices /= norm(vertices, axis=1, keepdims=True)
+        vertices = unit_vectors(vertices)
     return _mesh(vertices, faces)
 
 

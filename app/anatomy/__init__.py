@@ -15,6 +15,7 @@ import numpy as np
 from risorius import render
 from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import GLASSES_NAME, HAIR_NAME, MASK_NAME
+from risorius.geometry.transforms import moved_points
 
 from ..scenes import Drawable, Face
 from ..scenes.bent_part import BentPart, HeadPart, at_rest
@@ -188,6 +189,6 @@ def _cutting_plane(face: Face, view: AnatomyView) -> render.CutPlane | None:
     if not side:
         return None
     bone = face.bone_transforms()["cranium"]
-    at = bone[:3, :3] @ _midline_point(face) + bone[:3, 3]
+    at = moved_points(bone, _midline_point(face))
     normal = bone[:3, :3] @ (-side, 0.0, 0.0)
     return (*normal, -float(normal @ at))

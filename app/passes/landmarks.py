@@ -15,6 +15,7 @@ from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
+from risorius.geometry.transforms import moved_points
 
 from ..scenes import Face
 from .camera import CameraLabels
@@ -148,7 +149,7 @@ def _pupils(face: Face) -> Floats64:
         bone = f"eye_{side}"
         ball = next(part for part in face.head.parts if part.bone == bone)
         front = ball.vertices[ball.vertices[:, 2].argmax()]
-        pupils.append(bones[bone][:3, :3] @ front + bones[bone][:3, 3])
+        pupils.append(moved_points(bones[bone], front))
     return np.array(pupils)
 
 

@@ -13,6 +13,7 @@ from risorius.app.pictures import Image
 from risorius.bench.canvas import Canvas, Drawing
 from risorius.bench.embedding import FlatBinding, sheet
 from risorius.geometry.arrays import Floats64, Integers32
+from risorius.geometry.directions import unit_vectors
 
 
 def folded(points: Floats64) -> Floats64:
@@ -21,7 +22,7 @@ def folded(points: Floats64) -> Floats64:
     middle = np.column_stack([points[:, :2], 0.3 * np.sin(along)])
     slope = 0.3 * np.cos(along)
     normals = np.column_stack([-3.2 * slope, -slope, np.ones(len(points))])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit_vectors(normals)
     return np.asarray(middle + points[:, 2:] * normals)
 
 

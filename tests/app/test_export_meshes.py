@@ -20,6 +20,7 @@ from risorius.app.export.formats import ExportRequest, format_for, write
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
+from risorius.geometry.transforms import moved_points
 
 from .command_line import positions_in_blender
 
@@ -300,7 +301,7 @@ def test_npz_has_all_of_a_clip(clip, tmp_path):
                 arrays[f"{part}/shapes"] if f"{part}/shapes" in arrays else [rest] * FRAME_COUNT
             )
             for frame, matrix in enumerate(arrays[f"{part}/matrices"]):
-                points = shapes[frame] @ matrix[:3, :3].T + matrix[:3, 3]
+                points = moved_points(matrix, shapes[frame])
                 assert is_near(points, surface.at(frame))
             assert np.array_equal(arrays[f"{part}/faces"], surface.faces)
         assert set(arrays) >= {"uv", "face_uv", "bones/mandible", "controls/joy"}

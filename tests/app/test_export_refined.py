@@ -19,6 +19,7 @@ from risorius.app.refining.presets import Refinement
 from risorius.app.rig.surface import RefinedSurface
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
+from risorius.geometry.directions import unit_vectors
 
 from .glb_player import Player
 
@@ -106,7 +107,7 @@ def test_gltf_plays_the_refined_skin(refined, tmp_path):
     assert isinstance(skin, RefinedSurface)
     head = np.asarray(refined.clip.bones["cranium"][last])[:3, :3]
     normals = player.shape("skin", last, "NORMAL")
-    normals /= norm(normals, axis=1, keepdims=True)
+    normals = unit_vectors(normals)
     turned = normals[indices] @ head.T  # of vertices that follow the head fully
     share = skin.carried(refined.clip.scene.simulation.bones.head_weight)
     goes_along = share[skin.faces] > 0.999

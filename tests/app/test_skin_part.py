@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from risorius import assets
 from risorius.app.scenes.bent_part import FaceNow
 from risorius.app.scenes.skin_part import SkinPart
+from risorius.geometry.transforms import moved_points
 
 POSES = (
     {"AU43": 1.0},
@@ -80,7 +81,7 @@ def test_they_stay_on_lids_that_move(scene, pose):
     tree = cKDTree(np.vstack([corners.mean(axis=1), scene.positions]))
     for part in attached(scene):
         matrix = bones[part.bone]
-        there = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+        there = moved_points(matrix, part.vertices)
         roots = made[part.name].roots
         assert roots is not None
         assert tree.query(there[roots])[0].max() < 2.5
@@ -91,6 +92,6 @@ def test_they_stay_on_lids_that_move(scene, pose):
         if part.strand_radius:
             assert np.allclose(*lengths, atol=1e-3)
             for eye in scene.head.eyes:
-                centre = matrix[:3, :3] @ eye.centre + matrix[:3, 3]
+                centre = moved_points(matrix, eye.centre)
                 assert norm(there - centre, axis=1).min() > eye.radius - 0.5
     scene.reset()

@@ -5,6 +5,7 @@ import pytest
 
 from risorius.assets import load
 from risorius.assets.identities import person_called
+from risorius.geometry.directions import unit_vectors
 
 LAST = 12  # number of a rim's vertex at the lowest point of the lobe
 
@@ -20,7 +21,7 @@ def test_the_rim_of_an_ear_ends_without_a_corner(number, side):
     """The rim of a lobe turns by less than 70 degrees at its last vertex; it turned by 80 to 96."""
     rim = _vertices_of(number)[load("head").rings[f"ear_1_{side}"]]
     steps = np.diff(rim[LAST - 1 : LAST + 2], axis=0)
-    before, after = steps / np.linalg.norm(steps, axis=1, keepdims=True)
+    before, after = unit_vectors(steps)
     assert np.degrees(np.arccos(before @ after)) < 70.0
 
 

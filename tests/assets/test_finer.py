@@ -8,6 +8,7 @@ from numpy.linalg import norm
 
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.topology import boundary_loops, quarter
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.intersections import self_intersections
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
@@ -104,7 +105,7 @@ def test_boundaries_become_smooth(head):
         found = []
         for loop in boundary_loops(faces):
             along = np.diff(vertices[[*loop, loop[0]]], axis=0)
-            along /= norm(along, axis=1, keepdims=True)
+            along = unit_vectors(along)
             cosine = (along * np.roll(along, 1, axis=0)).sum(axis=1)
             angles = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
             found.append(float(np.median(angles)))

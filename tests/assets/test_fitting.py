@@ -17,6 +17,7 @@ from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
 from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.geometry.normals import cross_products
+from risorius.geometry.transforms import moved_points
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
 from tests.assets.checks import edge_faces
 from tests.heads import UserHead, closed, user_head, with_card
@@ -203,7 +204,7 @@ def test_the_chin_moves_stiffly_with_the_jaw(fitted, simulation):
     chin = fitted.vertices[fitted.landmarks[8]]
     displacement = settled_displacement(simulation, {"jaw_open": 1.0})
     jaw = simulation.bones.transforms()["mandible"]
-    way = jaw[:3, :3] @ chin + jaw[:3, 3] - chin
+    way = moved_points(jaw, chin) - chin
     moved = displacement[fitted.landmarks[8]]
     assert moved @ way / (way @ way) > 0.88
 
@@ -228,7 +229,7 @@ def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
     bent = simulation.anatomy.tongue()
     jaw = simulation.bones.transforms()["mandible"]
     assert bent is not None
-    reach = (bent @ jaw[:3, :3].T + jaw[:3, 3])[:, 2].max()
+    reach = moved_points(jaw, bent)[:, 2].max()
     assert 4.0 < reach - simulation.positions[fitted.landmarks[66], 2] < 20.0
 
 

@@ -17,6 +17,7 @@ from risorius.assets.fitting.warp import ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
 from risorius.bench.subjects import decimated
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products, points_on_triangles, vertex_normals
 from tests.assets.checks import check_part
 from tests.heads import UserHead, shape
@@ -94,7 +95,7 @@ def test_the_wall_of_a_socket_moves_no_eye():
     inward = []
     for eye in head.eyes:
         away = head.vertices[head.rings[f"eye_2_{eye.name}"]] - eye.centre
-        away /= norm(away, axis=1, keepdims=True)
+        away = unit_vectors(away)
         walls.append(eye.centre + (eye.radius - 2.0) * away)
         inward.append(-away)
     narrow = replace(

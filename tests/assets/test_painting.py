@@ -7,6 +7,7 @@ from pytest import approx
 
 from risorius.assets.fitting.painting import plain_picture
 from risorius.assets.model import Segment
+from risorius.geometry.directions import unit_vectors
 
 LARGEST_IMAGE_FILE = 1_250_000  # [bytes]
 
@@ -41,7 +42,7 @@ def test_picture_continues_outside_the_skin(head):
     size = len(head.albedo)
     inside = head.uv[rim] * [size, -size] + [0.0, size]
     outward = inside - size / 2
-    beyond = inside + 4.0 * outward / np.linalg.norm(outward, axis=1, keepdims=True)
+    beyond = inside + 4.0 * unit_vectors(outward)
     colours = []
     for places in (inside, beyond):
         columns, rows = places.astype(int).T

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.linalg import norm
 from pytest import approx
 
+from risorius.geometry.directions import unit_vectors
 from tests.assets.checks import check_part, part, winding_numbers
 
 BONES = {"cranium", "mandible", "eye_left", "eye_right", "neck"}
@@ -173,7 +174,7 @@ def test_lashes_are_curves(head):
         lash = lashes.vertices[lashes.roots == root].astype(np.float64)
         rings = lash[:-1].reshape(-1, 3, 3).mean(axis=1)
         ways = np.diff(np.vstack([rings, lash[-1]]), axis=0)
-        ways /= norm(ways, axis=1, keepdims=True)
+        ways = unit_vectors(ways)
         cosines = (ways[1:] * ways[:-1]).sum(axis=1)
         assert cosines.min() > np.cos(np.radians(30.0))
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.rays import crossings, cutting, exits
 from risorius.geometry.read_only import read_only
@@ -54,7 +55,7 @@ def test_rays_leave_a_cube_where_its_walls_are():
     vertices, faces = cube()
     origin = np.array([0.3, -0.2, 0.5])
     directions = random.normal(size=(300, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = unit_vectors(directions)
     ray, distance, cosine = exits(origin, directions, vertices, faces)
     order = np.argsort(ray)
     assert np.array_equal(ray[order], np.arange(300))

@@ -10,6 +10,7 @@ import pytest
 
 from risorius import render
 from risorius.geometry.arrays import Flags, Floats32, Integers32, Unsigned8, Unsigned32
+from risorius.geometry.directions import unit_vectors
 from tests.meshes import ball
 
 SignedImage = npt.NDArray[np.int32]  # differences of images, (H, W, 3)
@@ -45,7 +46,7 @@ def square(half: float = 50.0, *, z: float = 0.0, bulge: float = 0.0) -> Shape:
     """Two triangles that face the viewer; `bulge` tilts the corner normals outward."""
     corners = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
     normals = corners * np.float32(bulge) + np.array((0, 0, 1), np.float32)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit_vectors(normals)
     positions = corners * np.float32(half) + np.array((0, 0, z), np.float32)
     return Shape(positions, normals, np.array([(0, 1, 2), (0, 2, 3)], np.uint32))
 

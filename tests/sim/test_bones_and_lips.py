@@ -7,6 +7,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
+from risorius.geometry.transforms import moved_points
 from risorius.sim.skin_graph import graph_of
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
@@ -23,7 +24,7 @@ def test_head_turns_as_one(simulation, head, control, axis, sign):
     """Skin above the neck rotates with the cranium: upward, to the left, and tilted to the left."""
     settled_displacement(simulation, {control: 0.5})
     cranium = simulation.bones.transforms()["cranium"]
-    carried = head.vertices @ cranium[:3, :3].T + cranium[:3, 3]
+    carried = moved_points(cranium, head.vertices)
     face = head.landmarks
     assert np.abs(simulation.positions[face] - carried[face]).max() < 1e-6
     watched = face[NOSE_TIP] if control != "head_roll" else face[27]

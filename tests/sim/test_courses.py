@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
+from risorius.geometry.directions import unit_vectors
 from tests.sim.poses import FRAME_TIME, settled_displacement
 
 
@@ -48,7 +49,7 @@ def test_sphincters_are_drawn_without_corners(simulation):
         (line,) = courses[name]
         steps = np.diff(line, axis=0)
         assert _length(line) > 10.0, name
-        ways = steps / norm(steps, axis=1, keepdims=True)
+        ways = unit_vectors(steps)
         corners = (ways[1:] * ways[:-1]).sum(axis=1) < 0.5  # turns of more than 60 degrees
         assert corners.sum() <= 1, name
 

@@ -7,6 +7,7 @@ from numpy.linalg import norm
 from risorius import refine, sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
+from risorius.geometry.transforms import moved_points
 from risorius.refine.mesh.creases import dihedral_angles
 from risorius.sim.contact import PRESSED_OVERLAP
 from risorius.sim.face_model import build_face_model
@@ -357,7 +358,7 @@ def test_jaw_slides(simulation, head):
         assert 8.0 < sign * chin[0] < 11.3
         assert abs(chin[2]) < 1.5
         matrix = simulation.bones.transforms()["mandible"]
-        condyles = head.jaw_axis @ matrix[:3, :3].T + matrix[:3, 3] - head.jaw_axis
+        condyles = moved_points(matrix, head.jaw_axis) - head.jaw_axis
         assert (np.abs(sign * condyles[:, 0] - 10.0) < 2.0).all()
         assert np.abs(condyles[:, 1:]).max() < 1.5
 
@@ -367,11 +368,8 @@ def test_gaze_turns_the_eyes(simulation, head):
     moved = settled_displacement(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
     for eye in head.eyes:
         matrix = simulation.bones.transforms()[f"eye_{eye.name}"]
-        pupil = (
-            matrix[:3, :3] @ (eye.centre + np.array([0.0, 0.0, eye.radius]))
-            + matrix[:3, 3]
-            - eye.centre
-        )
+        front = eye.centre + np.array([0.0, 0.0, eye.radius])
+        pupil = moved_points(matrix, front) - eye.centre
         assert pupil[0] > 4.0
         assert pupil[1] > 4.0
         assert norm(pupil) == pytest.approx(eye.radius)

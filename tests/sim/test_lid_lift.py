@@ -9,6 +9,7 @@ from risorius.assets.data_files import read_image
 from risorius.assets.fitting import fit_head
 from risorius.assets.meshes import Mesh
 from risorius.bench.subjects import decimated
+from risorius.geometry.directions import unit_vectors
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
@@ -32,7 +33,7 @@ def at(beside, distance):
 def lifted(x, lift):
     """Points moved away from the ball by `lift` [mm]."""
     away = x - EYEBALL.centre
-    return x + lift[:, None] * away / norm(away, axis=1, keepdims=True)
+    return x + lift[:, None] * unit_vectors(away)
 
 
 def nearest(x):

@@ -5,6 +5,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
+from risorius.geometry.transforms import moved_points
 from tests.assets.checks import part, winding_numbers
 from tests.sim.poses import FRAME_TIME, settled_displacement, without
 
@@ -23,7 +24,7 @@ QUICK_POSES = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"visem
 def placed(simulation, points, bone):
     """A part's points, placed by its bone."""
     matrix = simulation.bones.transforms()[bone]
-    return points @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved_points(matrix, points)
 
 
 def tongue_now(simulation):

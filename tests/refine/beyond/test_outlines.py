@@ -210,7 +210,7 @@ def test_nostrils_are_rounder_than_polygons(person):
 def turns_along(points):
     """Angles [degrees] between consecutive sides of a polyline, for points (n, 3)."""
     sides = np.diff(points, axis=0)
-    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    sides = unit_vectors(sides)
     return np.degrees(np.arccos((sides[1:] * sides[:-1]).sum(axis=1)))
 
 

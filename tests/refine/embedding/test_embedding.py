@@ -11,6 +11,7 @@ from numpy.linalg import norm
 from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import refine
+from risorius.geometry.directions import unit_vectors
 from tests import meshes
 
 from .twin import Twin
@@ -104,7 +105,7 @@ def test_rest_is_rest_and_rigid_motion_is_exact(mesh):
     rest = embedding.evaluate(mesh.vertices)
     assert rest.normals is not None
     assert_allclose(rest.positions, fine, atol=1e-12)
-    unit = fine / norm(fine, axis=1, keepdims=True)
+    unit = unit_vectors(fine)
     assert_allclose(rest.normals, unit, atol=1e-6)
     moved = embedding.evaluate(turned(mesh.vertices))
     assert moved.normals is not None
