@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.arrays import Floats32, Floats64, Integers32
+from ..geometry.numbering import places_among
 from .data_files import read_toml
 from .fitting.head import FittedHead
 from .fitting.warp import Similarity
@@ -51,8 +52,7 @@ def coarse_head() -> CoarseHead:
     known = load("head")
     layout = read_toml(LAYOUT_FILE)
     kept, faces = _layout(known, layout["triangles"])
-    number = np.full(len(known.vertices), -1, np.int32)
-    number[kept] = np.arange(len(kept))
+    number = places_among(kept, len(known.vertices))
     # Its lids have no lashes, and no map shows form finer than its triangles.
     parts = tuple(_behind_lids(known, part) for part in known.parts if part.roots is None)
     no_directions = np.zeros((len(kept), 2, 3), np.float32)

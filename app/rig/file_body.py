@@ -22,6 +22,7 @@ from risorius.geometry.arrays import Flags, Floats64, Integers, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.geometry.mesh_graph import edge_graph, pieces_of
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.numbering import places_among
 from risorius.geometry.sides import edges_of
 from risorius.geometry.transforms import moved_points
 
@@ -212,9 +213,8 @@ def merged_vertices(mesh: Mesh, head: FittedHead) -> Integers:
 
 def places_in_skin(head: FittedHead, same: Integers) -> Integers:
     """Return the index in the skin of each vertex of a file, or -1, (V,)."""
-    local_index = np.full(len(same), -1, np.int64)
-    local_index[head.file_vertices] = np.arange(len(head.file_vertices))
-    return np.where(local_index >= 0, local_index, local_index[same])
+    places = places_among(head.file_vertices, len(same))
+    return np.where(places >= 0, places, places[same])
 
 
 def with_own_tongue(
@@ -232,9 +232,7 @@ def with_own_tongue(
 
 def _faces_among(indices: Integers, faces: Integers32, count: int) -> Integers32:
     """Return the triangles between n of `count` vertices, as rows of `indices` (n,), (m, 3)."""
-    local_index = np.full(count, -1, np.int32)
-    local_index[indices] = np.arange(len(indices))
-    local_faces = local_index[faces]
+    local_faces = places_among(indices, count)[faces]
     is_whole = (local_faces >= 0).all(axis=1)
     return local_faces[is_whole]
 

@@ -22,6 +22,7 @@ from risorius.assets import Segment
 from risorius.assets.fitting import fit
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
+from risorius.geometry.numbering import places_among
 from risorius.geometry.transforms import moved_points
 
 SIZE = (300, 300)
@@ -96,11 +97,9 @@ def mask(lowest):
     _, y, z = head.vertices[head.faces].mean(axis=1).T
     jaw = lowest + 0.5 * np.maximum(70.0 - z, 0.0)
     faces = head.faces[(y < 60.0) & (z > 12.0) & (y > jaw)]
-    used, numbers = np.unique(faces, return_inverse=True)
-    place_of = np.full(len(head.vertices), -1)
-    place_of[used] = np.arange(len(used))
-    mesh = Mesh(head.vertices[used], numbers.reshape(-1, 3).astype(np.int32))
-    return fit(mesh, place_of[head.landmarks].astype(np.int32))
+    used = np.unique(faces)
+    places = places_among(used, len(head.vertices))
+    return fit(Mesh(head.vertices[used], places[faces]), places[head.landmarks])
 
 
 def seen_from_in_front(sitter, pitches):
