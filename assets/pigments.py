@@ -13,6 +13,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64
 from ..geometry.colour import to_linear
+from ..geometry.polylines import polyline_at
 
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
@@ -43,11 +44,11 @@ def changes_of(melanin: float, blood: float) -> tuple[Floats64, Floats64, Floats
     amounts = [complexion.melanin for complexion in COMPLEXIONS]
     usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
     hairs = to_linear(np.array([complexion.hair for complexion in COMPLEXIONS]))
-    hair = [np.interp(melanin, amounts, channel) for channel in hairs.T]
+    hair = polyline_at(melanin, amounts, hairs)
     more = max(melanin - amounts[-1], 0.0)
     dark_melanin = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
     density = (melanin - more - SHIPPED_COMPLEXION.melanin) * MELANIN + more * dark_melanin
-    return density, (blood * usual - SHIPPED_COMPLEXION.blood) * BLOOD, np.array(hair)
+    return density, (blood * usual - SHIPPED_COMPLEXION.blood) * BLOOD, hair
 
 
 def paleness_of_lips(pale: float, density: Floats64) -> Floats64:

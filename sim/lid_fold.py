@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers32
+from ..geometry.polylines import polyline_at
 from ..geometry.steps import smoothstep
 from .lid_edges import LID_COLUMNS, LidAxes
 from .polylines import reached_along
@@ -58,7 +59,7 @@ def _edge_turn(points: Floats64, edge: Integers32, turn: Floats64, is_near: Flag
     line = points[edge]
     length = reached_along(line)
     steps = np.linspace(0.0, length[-1], 2 * LID_COLUMNS)
-    places = np.stack([np.interp(steps, length, line[:, axis]) for axis in range(3)], axis=1)
+    places = polyline_at(steps, length, line)
     turns = np.interp(steps, length, turn[edge])
     least_distance = 0.3  # mm
     squared = ((points[is_near, None] - places) ** 2).sum(axis=2) + least_distance**2

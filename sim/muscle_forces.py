@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32, Unsigned32
-from ..geometry.polylines import arc_lengths
+from ..geometry.polylines import arc_lengths, polyline_at
 from ..jit import njit
 from .fibres import (
     FIBRE_POINTS,
@@ -110,8 +110,7 @@ class MuscleForces:
             remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
             contracted = fixed + remaining * (arc - fixed)
-            line = [np.interp(contracted, arc, coordinate) for coordinate in moved.T]
-            lines[self.names[muscle]].append(np.stack(line, axis=1))
+            lines[self.names[muscle]].append(polyline_at(contracted, arc, moved))
         return lines
 
     def courses(

@@ -28,6 +28,7 @@ import scipy
 from ...geometry.arrays import Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.normals import cross_products, vertex_normals
+from ...geometry.polylines import polyline_at
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
@@ -179,11 +180,10 @@ def _move_brows(
         own = is_right == (number < BROW_LANDMARKS[5])
         if own.any():
             places = np.array(known)[own]
-            motion = [np.interp(number, places, axis) for axis in motions[own].T]
+            motion = polyline_at(number, places, motions[own])
         else:
             mirrored = BROW_LANDMARKS[0] + BROW_LANDMARKS[-1] - number
-            motion = [np.interp(mirrored, known, axis) for axis in motions.T]
-            motion[0] = -motion[0]
+            motion = polyline_at(mirrored, known, motions) * [-1.0, 1.0, 1.0]
         found[number] += motion
     brows = list(BROW_LANDMARKS)
     forward = np.zeros((len(brows), 3))
