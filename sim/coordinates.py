@@ -68,7 +68,7 @@ class FaceSpace:
 
     def to_standard(self, points: npt.ArrayLike) -> Floats64:
         """Map points [head units], shape (..., 3), to the standard space [mm]."""
-        return (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
+        return self.vectors_to_standard(np.asarray(points, dtype=np.float64) - self.origin)
 
     def to_head(self, points: npt.ArrayLike) -> Floats64:
         """Map points [mm, standard space], shape (..., 3), to head coordinates."""

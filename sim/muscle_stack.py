@@ -145,8 +145,7 @@ def _stack_of(found: Sequence[_Carried], line_count: int) -> Stack:
             )
         ]
     points = joined(found)
-    held = np.zeros(line_count * FIBRE_POINTS)
-    np.add.at(held, points.at, points.weight)
+    held = np.bincount(points.at, points.weight, line_count * FIBRE_POINTS)
     most = np.maximum(held, 1.0)[points.at]
     weight = points.weight / most
     least_weight = 0.02  # weight of a displacement; smaller ones are dropped

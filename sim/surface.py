@@ -101,11 +101,10 @@ class SkinSurface:
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = 1e4
     ) -> Floats64:
         """Return the smoothest field, shape (V,), with `values` at the seed `vertices`."""
-        weight = np.zeros(self.vertex_count)
-        right = np.zeros(self.vertex_count)
         seeds = np.asarray(vertices, dtype=np.int64)
-        np.add.at(weight, seeds, hold)
-        np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))
+        weight = hold * np.bincount(seeds, minlength=self.vertex_count)
+        held = hold * np.asarray(values, dtype=np.float64)
+        right = np.asarray(np.bincount(seeds, held, self.vertex_count), np.float64)
         # This term makes components without a seed zero instead of undefined.
         seed_floor = 1e-6
         diagonal = weight + seed_floor * self.areas

@@ -18,6 +18,7 @@ import numpy as np
 from risorius.geometry.arrays import Floats32, Floats64, Integers32
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.steps import smoothstep
 
 from ..scenes import Face
 from .resting_skin import RestingSkin
@@ -119,7 +120,7 @@ class Muscles:
         thick = _thickness(np.ones((len(lines), 1)))
         end_depth = 3.4  # [mm] below the skin, at the end of a band
         start_depth = depth[:, :1]
-        deepening = ROW_FRACTIONS * ROW_FRACTIONS * (3.0 - 2.0 * ROW_FRACTIONS)
+        deepening = smoothstep(ROW_FRACTIONS)
         deep = start_depth + (end_depth - start_depth) * deepening
         deep[len(self.names) :] = end_depth  # sphincters do not begin on a bone
         side = unit_vectors(np.cross(np.gradient(lines, axis=1), normal))
