@@ -19,6 +19,8 @@ from risorius.app.scenes import Scene
 from risorius.assets.identities import HAIR_NAME
 from risorius.geometry.arrays import Floats64
 
+from .averages import root_mean_square
+
 Transforms = Mapping[str, Floats64]
 CLAY_STYLE = render.Style(
     textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE
@@ -111,7 +113,7 @@ class ComparedPicture:
 
     def rms(self, truth: ComparedPicture) -> float:
         """Root mean square difference from another picture [levels of 255]."""
-        return float(np.sqrt((self.difference(truth) ** 2).mean()))
+        return root_mean_square(self.difference(truth))
 
 
 def parts_without_hair(scene: Scene) -> tuple[Any, ...]:

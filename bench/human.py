@@ -30,6 +30,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
+from .averages import median, root_mean_square
 from .report import Target, at_most, table
 from .subjects import DENSE_FILE, MILLIMETRES_PER_CENTIMETRE, MODES_FILE, read_arrays
 
@@ -219,8 +220,8 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: HeadMesh) -> Rema
     groups = {name: near & (labels[asked] == name) for name in REGION_NAMES} | {"all": near}
     return Remainder(
         weights,
-        {name: _rms(distance[group]) for name, group in groups.items()},
-        {name: _median(angle[group]) for name, group in groups.items()},
+        {name: root_mean_square(distance[group]) for name, group in groups.items()},
+        {name: median(angle[group]) for name, group in groups.items()},
     )
 
 
@@ -251,14 +252,6 @@ def _nearest_surface_points(
     return at.interpolate(surface.vertices), facing, cosine
 
 
-def _rms(values: Floats64) -> float:
-    return float(np.sqrt((values**2).mean())) if len(values) else float("nan")
-
-
-def _median(values: Floats64) -> float:
-    return float(np.median(values)) if len(values) else float("nan")
-
-
 def report(found: Mapping[str, Remainder]) -> str:
     """The text to print."""
     columns = "|".join(f"{name} mm:9.2f|degrees:7.1f" for name in found)
@@ -277,7 +270,7 @@ def report(found: Mapping[str, Remainder]) -> str:
         "",
     ]
     for name, each in found.items():
-        rms = _rms(each.weights)
+        rms = root_mean_square(each.weights)
         largest = np.abs(each.weights).max()
         lines.append(
             f"weights, {name}: rms {rms:.2f}, largest {largest:.1f}; people have 1 and 2.5"

@@ -34,6 +34,7 @@ from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
 
+from .averages import mean, median
 from .report import Target, at_most, table
 from .seen import face_landmarker
 from .subjects import LANDMARK_GROUPS
@@ -93,8 +94,8 @@ class DetectorErrors:
         """The mean error of each point on frontal pictures, averaged over both sides, (68, 2)."""
         if not self.is_frontal.any():
             return np.full((68, 2), np.nan)
-        mean = self.errors[self.is_frontal].mean(axis=0)
-        return np.asarray(0.5 * (mean + mean[MIRRORED_LANDMARKS] * [-1.0, 1.0]))
+        constant = self.errors[self.is_frontal].mean(axis=0)
+        return np.asarray(0.5 * (constant + constant[MIRRORED_LANDMARKS] * [-1.0, 1.0]))
 
 
 def is_installed(detector: str) -> bool:
@@ -283,7 +284,7 @@ def report(finding: DetectorErrors) -> str:
     for name, numbers in LANDMARK_GROUPS.items():
         largest = np.linalg.norm(finding.constant[numbers], axis=1).max()
         of_group = finding.distances[:, numbers]
-        rows.append((name, _mean(of_group), _mean(of_group[frontal]), largest))
+        rows.append((name, mean(of_group), mean(of_group[frontal]), largest))
     offsets = [
         (
             f"{MIRRORED_LANDMARKS[number]}, {number}"
@@ -305,7 +306,7 @@ def report(finding: DetectorErrors) -> str:
     failure_count = (of_pictures > FAILED_ERROR).sum()
     lines += [
         "",
-        f"frontal pictures: median {_median(of_pictures):.2f} %; the detector misses the face in "
+        f"frontal pictures: median {median(of_pictures):.2f} %; the detector misses the face in "
         f"{failure_count} (above {FAILED_ERROR:g} %)",
     ]
     if offsets:
@@ -319,18 +320,10 @@ def report(finding: DetectorErrors) -> str:
 
 def targets(finding: DetectorErrors) -> list[Target]:
     """The bounds of errors on frontal pictures."""
-    error = _mean(finding.distances[finding.is_frontal])
+    error = mean(finding.distances[finding.is_frontal])
     constant = float(np.linalg.norm(finding.constant, axis=1).max())
     most = MOST_ERROR[finding.detector]
     return [
         at_most("frontal pictures", error, most, " %"),
         at_most("the constant part of any point", constant, MOST_CONSTANT, " %"),
     ]
-
-
-def _mean(values: Floats64) -> float:
-    return float(values.mean()) if values.size else float("nan")
-
-
-def _median(values: Floats64) -> float:
-    return float(np.median(values)) if values.size else float("nan")

@@ -33,6 +33,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
 
+from .averages import root_mean_square
 from .canvas import CLAY_STYLE, Canvas, Drawing
 from .report import Target, at_least, table
 from .subjects import Subject
@@ -123,7 +124,7 @@ def measure(
                 positions, _, triangles, *_ = mesh
                 distances = closest_points(pose.dense, positions, triangles).distances
                 ratio = len(triangles) / len(subject.coarse_faces)
-                distance = float(np.sqrt((distances**2).mean()))
+                distance = root_mean_square(distances)
                 errors = _differences(_grey_pictures(canvas, cameras, mesh), truth)
                 scores.append(Score(method, name, ratio, distance, *errors))
     return scores
@@ -197,7 +198,7 @@ def _differences(
     (true_grey, true_covered) = truth
     either = _block_means(covered | true_covered) > 0.0
     wrong = np.count_nonzero(covered != true_covered) / SUPERSAMPLING**2 / len(MEASURED_VIEWS)
-    return float(np.sqrt(((grey - true_grey)[either] ** 2).mean())), wrong
+    return root_mean_square((grey - true_grey)[either]), wrong
 
 
 def _block_means(fine: npt.NDArray[Any]) -> Floats64:

@@ -33,6 +33,7 @@ from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.closest import closest_points
 from risorius.refine.kahler.criterion import Thresholds
 
+from .averages import root_mean_square
 from .report import processor, table
 from .rival_libraries import RIVAL_METHODS, Method, PointsAndFaces, RefinesFrame
 from .subjects import Subject
@@ -219,7 +220,7 @@ def _distance_from_truth(case: Case, surface: PointsAndFaces) -> float:
     points, triangles = surface
     away = closest_points(case.truth, points.astype(np.float64), triangles.astype(np.int32))
     diagonal = float(np.linalg.norm(np.ptp(case.truth, axis=0)))
-    return 1e6 * float(np.sqrt((away.distances**2).mean())) / diagonal
+    return 1e6 * root_mean_square(away.distances) / diagonal
 
 
 def _refined_by(case: Case, method: Method, limit: float) -> PointsAndFaces:

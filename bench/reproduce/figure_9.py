@@ -20,6 +20,7 @@ from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL_SIZE, SHEET_COLUMNS, SHEET_ROWS, make_grid
 from risorius.geometry.arrays import Floats64
 
+from ..averages import root_mean_square
 from ..canvas import FLAT_STYLE, GOURAUD_STYLE, Canvas, Drawing, image_table
 from .experiments import Outcome
 from .figure_10 import Variant
@@ -111,7 +112,7 @@ def grey_level_difference(image: Image, truth: Image) -> float:
     grey = _grey(image)
     true_grey = _grey(truth)
     both = np.maximum(grey, true_grey) < BACKGROUND_GREY
-    return float(np.sqrt(np.mean((grey - true_grey)[both] ** 2)))
+    return root_mean_square((grey - true_grey)[both])
 
 
 def outline_difference(image: Image, truth: Image) -> float:
