@@ -94,9 +94,9 @@ class Part:
       motion at each vertex, 0 to 1, (n,), float32; None for other parts.
     - striation: for hair, (n, 7), float32: coordinates across and along strands [mm], the vector
       from root to tip [mm], the density, and the fray: 0 for hair that is combed smooth, to 1 for
-      strands that end one by one at outlines. For locks of hair, (n, 5): the unit vector along the
-      lock, half its width [mm] with the side of the vertex as its sign, and the opacity. None for
-      other parts.
+      strands that end one by one at outlines, or to -1 for loose hair, whose locks end one by one
+      at the hem. For locks of hair, (n, 5): the unit vector along the lock, half its width [mm]
+      with the side of the vertex as its sign, and the opacity. None for other parts.
     """
 
     name: str

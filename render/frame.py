@@ -35,9 +35,9 @@ class DrawnPart(Protocol):
     - strand_radius: radius of the strands [unit of the scene]; 0 for a solid part.
     - striation: coordinates of the vertices across and along fibres [mm], (n, 2), or None. Shells
       have shape (n, 7), with further columns: the vector from root to tip [mm], the density, and
-      the fray, from 0 for smooth outlines to 1. The vertices of shells lie at 0.6 of this vector.
-      Locks have shape (n, 5): the unit vector along the lock, half its width [mm] with the side of
-      the vertex as its sign, and the opacity.
+      the fray, from 0 for smooth outlines to 1, or to -1 for ragged hems. The vertices of shells
+      lie at 0.6 of this vector. Locks have shape (n, 5): the unit vector along the lock, half its
+      width [mm] with the side of the vertex as its sign, and the opacity.
     """
 
     @property

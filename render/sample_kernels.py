@@ -328,7 +328,7 @@ def _surface_number(
     one, two, three = found
     if kind == HAIR_KIND:
         # As in shell_layers.glsl.
-        has_edge = one >= 0.9 * min(max(2.5 * abs(two), _LEAST_FACING), 1.0)
+        has_edge = one >= max(0.9 * min(max(2.5 * abs(two), _LEAST_FACING), 1.0), -0.5 * three)
         frays = max(two, 0.0) < _FRAYED_EDGE * three
         return numbers[0] if has_edge and not frays else -1.0
     if not is_front:

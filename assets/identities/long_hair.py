@@ -26,7 +26,7 @@ from .single_hairs import locks_along
 
 # Horizontal angles [rad]: from straight ahead to the hair, and from there to its full volume.
 HAIR_EDGE_ANGLE, ROUNDING_ANGLE = np.radians([62.0, 50.0])
-THINNING_LENGTH = 6.0  # [mm] over which the tips of cut hair thin out
+THINNING_LENGTH = 14.0  # [mm] over which the tips of cut hair thin out
 FULL_DENSITY = 2.0  # density at which all layers are full
 HAIR_HEIGHT = 9.0  # [mm] that hair stands off the head
 LAYER_SLIDE = 1.3  # [mm] that layers move along lying strands, for each millimetre outward
@@ -72,7 +72,7 @@ def falling_hair(
     solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     # [mm] off the skin: little at roots, so no light passes; more over foreheads, which may bulge.
     clearance = np.where(over > 0.0, 5.0 + 3.0 * (1.0 - beside[:, None]) ** 2, 2.5)
-    far = _skin_reach(directions, solid) + clearance + _lock_thickness(across) * thick
+    far = _skin_reach(directions, solid) + clearance + _lock_thickness(across, over) * thick
     places = middle + far[..., None] * directions
     start = places[:, -1:]
     wide = np.linalg.norm((start - middle)[..., [0, 2]], axis=-1)
@@ -87,14 +87,39 @@ def falling_hair(
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
     bent[:, 0] = sharp[:, 0]  # roots stay
     along = _arc_lengths(bent)
-    off = 88.0 * (angle - HAIR_EDGE_ANGLE)[:, None]
-    # Hair becomes dense within 2 mm of the parting and 4 mm of the face. Over longer distances, the
-    # strands in front would look like bars over the skin.
-    dense = np.minimum(0.5 + along / 1.4, 0.1 + off / 2.4)
-    dense = np.minimum(dense, (along[:, -1:] - along) / THINNING_LENGTH)
+    smooth_length, loose_length = 30.0, 110.0  # [mm]; lengths from the roots, see `_layered_part`
+    loose = smoothstep(along, smooth_length, loose_length)
+    off = 88.0 * (angle - HAIR_EDGE_ANGLE)[:, None] - _edge_offsets(along, side) * loose
+    dense = _densities(along, off, loose)
     tones = _lock_lightness(across) * colour
-    hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, tones, _slide_of(along))
+    slide = _slide_of(along)
+    hair = _layered_part(HAIR_NAME, bent, across[:, None], thick, dense, tones, slide, loose)
     return (*_with_tips(hair, bent.shape[1]), locks_along(hair, across, along))
+
+
+def _densities(along: Floats64, off: Floats64, loose: Floats64) -> Floats64:
+    """Return the density of loose hair, (n, m); it may be above FULL_DENSITY.
+
+    along: lengths from the roots [mm], (n, m). off: distances behind the edge beside the face [mm],
+    (n, m). loose: as in `_layered_part`.
+    """
+    # Hair becomes dense within 2 mm of the parting and 4 to 7 mm of the face. Over longer
+    # distances, the strands in front would look like bars over the skin.
+    before_tips = (along[:, -1:] - along) / THINNING_LENGTH
+    beside_face = np.minimum(0.1 + off / (2.4 + 1.6 * loose), before_tips)
+    return np.minimum(0.5 + along / 1.4, beside_face)
+
+
+def _edge_offsets(along: Floats64, side: Floats64) -> Floats64:
+    """Return how far the edge of loose hair lies behind its foremost places beside the face [mm].
+
+    along: lengths from the roots [mm], (n, m). side: -1, 0 or 1 for strands on the right, in the
+    middle and on the left, (n,). Returns offsets, (n, m).
+    """
+    most = 5.0  # [mm]
+    wavelength = 94.0  # [mm]
+    turn = 2.0 * np.pi * along / wavelength + side[:, None]
+    return np.asarray(0.5 * most * (1.0 + np.sin(turn)))
 
 
 def _lock_heights(across: Floats64) -> Floats64:
@@ -104,9 +129,14 @@ def _lock_heights(across: Floats64) -> Floats64:
     return np.asarray((wide + narrow) / 2.2)
 
 
-def _lock_thickness(across: Floats64) -> Floats64:
-    """Return factors on the thickness of hair with locks, (n, 1); across: as `_lock_heights`."""
-    depth = 0.5  # of grooves, as a fraction of the thickness
+def _lock_thickness(across: Floats64, over: Floats64) -> Floats64:
+    """Return factors on the thickness of hair with locks, (n, m).
+
+    across: as in `_lock_heights`. over: fractions of the part of a strand on the head, (m,).
+    """
+    # Depth of grooves, as a fraction of the thickness. Deep ones beside the parting would look like
+    # the ruffle of a bonnet.
+    depth = 0.15 + 0.35 * smoothstep(over, 0.3, 1.0)
     locks = _lock_heights(across)
     return np.asarray(1.2 + depth * (locks - locks.max())[:, None])
 
@@ -280,6 +310,7 @@ def _layered_part(
     dense: Even,
     colour: Floats64,
     slide: Even = LAYER_SLIDE,
+    loose: Even = 0.0,
 ) -> Part:
     """Make a part of n parallel strands with m points each, which is drawn in layers.
 
@@ -289,6 +320,7 @@ def _layered_part(
     dense: density, 0 to FULL_DENSITY, (n, m).
     colour: sRGB, (n, m, 3).
     slide: distance that layers move along strands for each millimetre outward, (n, m).
+    loose: 0 for hair that is combed smooth, to 1 for hair that hangs loose, (n, m).
     """
     shape = places.shape
     points = places.reshape(-1, 3)
@@ -305,9 +337,9 @@ def _layered_part(
     ahead = unit_vectors(np.gradient(places, axis=1).reshape(-1, 3))
     layer_share = 0.4  # fraction of the thickness between the first and the last layer
     along = short.LENGTHWISE_FACTOR * _arc_lengths(places)
-    columns = across, along, layer_share * thick, np.minimum(dense, FULL_DENSITY), slide
+    columns = across, along, layer_share * thick, np.minimum(dense, FULL_DENSITY), slide, loose
     rows = np.stack([np.broadcast_to(each, shape[:2]) for each in columns], axis=-1)
-    across, along, thick, dense, slide = np.split(rows.reshape(-1, 5), 5, axis=1)
+    across, along, thick, dense, slide, loose = np.split(rows.reshape(-1, 6), 6, axis=1)
     way = thick * (normals + slide * ahead)
     return Part(
         name=name,
@@ -317,7 +349,7 @@ def _layered_part(
         colours=np.broadcast_to(colour, shape).reshape(-1, 3).astype(np.float32),
         bone="cranium",
         shine=short.SLEEK_GLOSS,
-        striation=np.hstack([across, along, way, dense, np.zeros_like(dense)]).astype(np.float32),
+        striation=np.hstack([across, along, way, dense, -loose]).astype(np.float32),
     )
 
 

@@ -42,7 +42,7 @@ def locks_along(hair: Part, across: Floats64, along: Floats64) -> Part:
     whole = np.interp(strand, np.arange(len(across)), along[:, -1])
     long = 24.0 + 26.0 * length  # [mm]
     start = 0.04 * whole + (0.96 * whole - long) * place
-    below_hem = 13.0 * place**2 - 3.0  # [mm]
+    below_hem = 12.0 * place**2 - 7.0  # [mm]
     is_hem = is_hem < HEM_SHARE
     start = np.where(is_hem, whole + below_hem - long, start)
     t = np.linspace(0.0, 1.0, STATION_COUNT)
@@ -55,7 +55,8 @@ def locks_along(hair: Part, across: Floats64, along: Floats64) -> Part:
     ahead_only = places[:, :1] + (long * t)[..., None] * ahead
     places = places + np.where(is_hem, 0.45 * straight**2, 0.0)[..., None] * (ahead_only - places)
     drift = 9.0 * (lean - 0.5) * t**2 + 14.0 * (bow - 0.5) * t * (1.0 - t)  # [mm] to the side
-    rise = 260.0 * (off - 0.5) ** 7 * t**2  # [mm]; few locks stand off
+    most = 2.5 + 5.5 * place  # [mm] that locks stand off; most locks lie close
+    rise = most * off**4 * np.sin(0.7 * np.pi * t)
     height = 0.05 + 0.3 * inward  # of roots over the middle of the layers, as a share of them
     places += height[..., None] * ways + rise[..., None] * normals[:, None]
     places += drift[..., None] * unit_vectors(np.cross(normals[:, None], ahead))

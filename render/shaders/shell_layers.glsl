@@ -27,8 +27,9 @@ bool is_hair(float dense, float facing) {
 }
 
 // Whether the edge of hair is smoothed here. The hem is not: it fades out, and each layer ends at
-// another place there. Nor are outlines that fray. facing: negative on the inner side of hair.
+// another place there. Nor are outlines that fray, and loose hair beyond half its density. facing:
+// negative on the inner side of hair.
 // sample_kernels.py has the same numbers.
 bool has_edge(float dense, float facing, float fray) {
-    return dense >= 0.9 * seen_share(abs(facing)) && max(facing, 0.0) >= FRAYED_EDGE * fray;
+    return dense >= max(0.9 * seen_share(abs(facing)), -0.5 * fray) && max(facing, 0.0) >= FRAYED_EDGE * fray;
 }

@@ -17,7 +17,7 @@ in vec3 in_colour;
 in vec2 in_strand;  // across and along strands [mm]
 in vec3 in_way;     // vector from the root to the tip of the longest strand
 in float in_dense;  // density, 0 to 1; above 1, uneven strands are whole, too
-in float in_fray;   // 0 where outlines are smooth, to 1
+in float in_fray;   // 0 where outlines are smooth, to 1 where they fray; to -1 for loose hair
 uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
@@ -58,6 +58,10 @@ const float UNEVEN = 0.45;               // random shift of highlights by strand
 const vec2 SIDEWAYS = vec2(0.6, 0.85);   // facing at which single strands begin to show, and show fully
 const vec2 RAGGED = vec2(0.4, 0.08);     // random change of density by strand and lock, for uneven hems
 const vec2 CRISP = vec2(1.1, 1.6);       // steepness of hems where locks show, and where strands show
+const vec2 RAGGED_LOOSE = vec2(0.45, 0.4);  // RAGGED for loose hair, whose locks differ in length
+const float CRISP_LOOSE = 3.0;           // CRISP for loose hair, in which each lock ends by itself
+const float LEAST_COVER = 0.08;          // cover below which a pixel stays clear
+const float LEAST_HIDING = 0.85;         // the same for layers of loose hair that hide what is behind
 const float FRAYED = 2.4;                // [mm] from the outline over which strands end
 const vec2 UNEVENLY = vec2(2.0, 1.5);    // [mm] random change of this distance by strand and lock
 const float FRAYED_PIXELS = 3.0;         // least number of pixels of this distance
@@ -94,15 +98,20 @@ void main() {
     vec2 at = vec2(surface.strand.x + lean, surface.strand.x) / vec2(THIN, THICK);
     vec2 number = floor(at), place = at - number;
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    float seen = seen_share(facing);
+    float loose = max(-surface.fray, 0.0);
+    // Where loose hair curls inward, a line of sight along it meets only its thin hem.
+    float seen = mix(seen_share(facing), 1.0, loose);
     vec2 apart = vec2(0.5, 0.4) * clamp(surface.dense, 0.25, 1.0);  // less at hems, else they have teeth
     float tall = mix(outline, 0.65 + dot(apart, tones), single);
     // Toward hems strands are fewer and shorter; where they are finer than a pixel, hair turns clear.
-    float dense = surface.dense / seen + dot(RAGGED, tones);
-    float there = clamp(mix(CRISP.x, CRISP.y, share.x) * (dense - 0.5) + 0.5, 0.0, 1.0);
+    vec2 ragged = mix(RAGGED, RAGGED_LOOSE, loose);
+    float dense = surface.dense / seen + dot(ragged, tones);
+    float crisp = mix(mix(CRISP.x, CRISP.y, share.x), CRISP_LOOSE, loose);
+    float there = clamp(crisp * (dense - 0.5) + 0.5, 0.0, 1.0);
     // The first hairs of a hem are sparse from any side, else it has a torn edge seen from the side.
-    there *= clamp(4.0 * (surface.dense + dot(RAGGED, tones)), 0.0, 1.0);
-    float far = tall * smoothstep(0.0, mix(0.5, 1.0, single), dense);
+    there *= clamp(4.0 * (surface.dense + dot(ragged, tones)), 0.0, 1.0);
+    // Outer layers of loose hair reach as far down as inner ones, and soften their ends.
+    float far = tall * smoothstep(0.0, mix(mix(0.5, 1.0, single), 0.3, loose), dense);
     float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
     // Strands end one by one before the outline of all layers but the lowest.
     if (surface.layer > layer_place(0.5, layers) && surface.fray > 0.0 && facing < SIDEWAYS.x) {
@@ -111,7 +120,9 @@ void main() {
         float inside = max(surface.facing, 0.0) * surface.pixel / max(slope, 1e-6);
         cover *= clamp((inside + 0.01) / (frayed + 0.01), 0.0, 1.0);
     }
-    if (cover < 0.08) discard;
+    // Clear pixels that write depths would hide all hair behind a hem: a bright line.
+    bool hides = surface.layer < layer_place(float((layers + 1) / 2) - 0.5, layers);
+    if (cover < (hides ? mix(LEAST_COVER, LEAST_HIDING, loose) : LEAST_COVER)) discard;
     float uneven = 0.6 * (tones.x + tones.y);
     // Layers above absorb light; their number is the height of the strand above this layer.
     float above = (far - surface.layer) * float(layers);

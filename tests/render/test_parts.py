@@ -169,6 +169,32 @@ def test_outlines_of_hair_fray_and_leave_no_dotted_ring(renderer):
     assert 0.3 < (smooth - frayed).sum() / smooth[0] < 1.5  # pixels
 
 
+def test_the_hem_of_loose_hair_does_not_hide_hair_behind_it(renderer):
+    """Hair behind a thin hem is visible through it: bobs had a bright line along the hem.
+
+    Thin pixels of the hem hid all hair that was drawn later.
+    """
+    darks = []
+    for fray in (0.0, -1.0):
+        parts = []
+        for forward in (12.0, 0.0):  # both have the same outline; the first ends at half its height
+            ball = Ball(colour=(0.1, 0.1, 0.1))
+            height = ball.vertices[:, 1:2]
+            dense = np.clip(1.0 + 0.1 * height, 0.0, 2.0) if forward else 2.0 + 0.0 * height
+            columns = ball.vertices[:, :2], 4.0 * ball.normals, dense, fray + 0.0 * dense
+            parts.append(
+                reshaped(
+                    ball,
+                    vertices=ball.vertices + np.array([0.0, 0.0, forward]),
+                    striation=np.hstack(columns),
+                )
+            )
+        image = draw(renderer, parts=still(*parts)).mean(axis=2)
+        darks.append(image[42:62, 44:53].max())
+    veiled, loose = darks
+    assert loose < 90.0 < veiled
+
+
 def test_hair_hides_the_skin_behind_it(renderer):
     """Hair hides the outline of skin behind it."""
     wall = lent(renderer, square(z=-5.0))
