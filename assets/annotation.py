@@ -20,6 +20,7 @@ import numpy as np
 
 from ..geometry.arrays import Floats64, Integers32
 from ..geometry.closest import MeshSearch, SurfacePoints
+from ..geometry.directions import unit_vectors
 from ..geometry.normals import vertex_normals
 from ..geometry.polylines import arc_lengths, evenly_spaced
 from ..geometry.read_only import make_read_only
@@ -33,6 +34,11 @@ from .model import Head, Segment
 FIRST_INNER = 17  # the number of the first landmark that is not of the jaw
 LANE_COUNT = 25  # paths over the skin on which a side's outline is searched, from eye to chin
 LANE_STEPS = 25  # places along each of them
+LIP_EDGES = {61: 50, 62: 51, 63: 52, 67: 58, 66: 57, 65: 56}  # each with its outer neighbour
+LID_EDGES = {37: 41, 38: 40, 41: 37, 40: 38, 43: 47, 44: 46, 47: 43, 46: 44}  # with its opposite
+EDGE_LANDMARKS = (*LIP_EDGES, *LID_EDGES)
+EDGE_STEPS = 48  # places on a path from each of these landmarks away from the opening
+NEAR_STEPS = 24  # of them on the red, or on the lid; the others are on the skin beside it
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +47,18 @@ class Annotation:
 
     inner: surface points of the landmarks 17 to 67, in their order. lanes: surface points of the
     paths on which the outline is searched: LANE_COUNT paths of LANE_STEPS points on the right side,
-    then as many on the left. Each path runs from the cheek outward.
+    then as many on the left. Each path runs from the cheek outward. edges: surface points of paths
+    over lips and lids, EDGE_STEPS from each of EDGE_LANDMARKS away from the mouth or the eye.
     """
 
     inner: SurfacePoints
     lanes: SurfacePoints
+    edges: SurfacePoints
 
     def __post_init__(self) -> None:
         make_read_only(self.inner)
         make_read_only(self.lanes)
+        make_read_only(self.edges)
 
     def inner_points(self, positions: Floats64) -> Floats64:
         """Return the points 17 to 67 on a skin with vertices (V, 3), shape (51, 3)."""
@@ -64,6 +73,14 @@ class Annotation:
         paths = self.lanes.interpolate_round(positions, normals)
         return paths.reshape(2, LANE_COUNT, LANE_STEPS, 3)
 
+    def edge_paths(self, positions: Floats64, normals: Floats64) -> Floats64:
+        """Paths over lips and lids on a smooth skin, (14, EDGE_STEPS, 3), as `outline_paths`.
+
+        They begin at EDGE_LANDMARKS. The first NEAR_STEPS are on the red, or on the lid.
+        """
+        paths = self.edges.interpolate_round(positions, normals)
+        return paths.reshape(len(EDGE_LANDMARKS), EDGE_STEPS, 3)
+
 
 def annotation_of(head: Head | FittedHead) -> Annotation:
     """Return the annotation of a head at rest.
@@ -71,20 +88,31 @@ def annotation_of(head: Head | FittedHead) -> Annotation:
     For a user's head these are the points of its landmark file, because they are annotations.
     """
     if isinstance(head, Head | Person):
-        points, lanes = _built_in_lookup()
-        return Annotation(_with_brows(head, points), lanes)
+        points, lanes, edges = _built_in_lookup()
+        return Annotation(_with_brows(head, points), lanes, edges)
     known = load("head")
     warp = ThinPlateSpline(known.vertices[known.landmarks], head.vertices[head.landmarks])
     lanes = _built_in_lookup()[1]
     targets = warp.points(lanes.interpolate(known.vertices))
     normals = lanes.interpolate(vertex_normals(known.vertices, known.faces))
-    marked = _vertices(head.landmarks[FIRST_INNER:])
-    return Annotation(marked, nearest_on(targets, normals, head.vertices, head.faces))
+    return Annotation(
+        _vertices(head.landmarks[FIRST_INNER:]),
+        nearest_on(targets, normals, head.vertices, head.faces),
+        _edge_paths_of(head),
+    )
+
+
+def _edge_paths_of(head: FittedHead) -> SurfacePoints:
+    """Return the paths over lips and lids of a user's head: straight, through its landmarks."""
+    marked = head.landmarks[FIRST_INNER:]
+    places = _away_from_openings(head.vertices[marked]).reshape(-1, 3)
+    normals = _away_from_openings(vertex_normals(head.vertices, head.faces)[marked]).reshape(-1, 3)
+    return nearest_on(places, unit_vectors(normals), head.vertices, head.faces)
 
 
 @lru_cache(maxsize=1)
-def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
-    """Return points and lanes on the triangles that all persons have."""
+def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints, SurfacePoints]:
+    """Return points, lanes and paths over edges on the triangles that all persons have."""
     table = read_toml(Path(__file__).with_name("annotation.toml"))
     known = load("head")
     uv = known.uv[known.landmarks[FIRST_INNER:]].astype(np.float64)
@@ -100,7 +128,26 @@ def _built_in_lookup() -> tuple[SurfacePoints, SurfacePoints]:
     fraction = np.linspace(0.0, 1.0, LANE_STEPS)[:, None]
     left = inner[:, None] + fraction * (outer - inner)[:, None]
     lanes = np.stack([_mirror_image(left), left])
-    return points_on_texture(uv), points_on_texture(lanes.reshape(-1, 2))
+    return (
+        points_on_texture(uv),
+        points_on_texture(lanes.reshape(-1, 2)),
+        points_on_texture(_away_from_openings(uv).reshape(-1, 2)),
+    )
+
+
+def _away_from_openings(values: Floats64) -> Floats64:
+    """Return values along straight paths that begin at EDGE_LANDMARKS, (14, EDGE_STEPS, k).
+
+    values: those of the landmarks 17 to 67, (51, k).
+    """
+    lid_height = 0.5  # of a lid's skin beside its edge, as a fraction of the open eye's height
+    edges = values[np.array(EDGE_LANDMARKS) - FIRST_INNER]
+    red_borders = values[np.array(list(LIP_EDGES.values())) - FIRST_INNER]
+    opposite = values[np.array(list(LID_EDGES.values())) - FIRST_INNER]
+    lids = edges[len(LIP_EDGES) :]
+    ends = np.vstack([red_borders, lids + lid_height * (lids - opposite)])
+    fraction = np.arange(EDGE_STEPS)[:, None] / (NEAR_STEPS - 1)
+    return np.asarray(edges[:, None] + fraction * (ends - edges)[:, None])
 
 
 def _mirror_image(uv: Floats64) -> Floats64:

@@ -43,3 +43,10 @@ class CameraLabels:
         seen = self.to_camera(points) @ self.intrinsics.T
         pixels: Floats64 = seen[:, :2] / seen[:, 2:]
         return pixels
+
+    def from_picture(self, pixels: Floats64, depths: Floats64) -> Floats64:
+        """Return points at pixels (n, 2) with depths (n,), in the camera's coordinates, (n, 3)."""
+        middle = self.intrinsics[:2, 2]
+        focal = self.intrinsics[[0, 1], [0, 1]]
+        aside = (pixels - middle) / focal * depths[:, None]
+        return np.column_stack([aside, depths])

@@ -2,7 +2,7 @@
 
 The points of the jaw lie on the outline of the face that this camera sees. The outline is searched
 along lines of `assets.annotation`. Points that stay on the jaw bone are returned separately
-(`jaw_on_bone`).
+(`jaw_on_bone`). Those of the edges of lips and lids depend on the camera, too (`edges.py`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from risorius.assets.annotation import EDGE_LANDMARKS, FIRST_INNER
 from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
@@ -19,10 +20,11 @@ from risorius.geometry.transforms import moved_points
 
 from ..scenes import Face
 from .camera import CameraLabels
+from .edges import edge_points
 
 EYE_SIDES = ("right", "left")  # the subject's, in the order of landmarks
 JAW_COUNT = 17  # the first landmarks
-MOST_BEHIND = 2.0  # [mm] of depth between the refined skin and a visible landmark
+FARTHEST_SURFACE = 2.0  # [mm] from a visible landmark to the nearest surface in the picture
 
 
 @dataclass(frozen=True)
@@ -49,10 +51,11 @@ def landmarks_in(
     positions = face.positions
     jaw = outline(face, camera)
     inner = face.annotation.inner_points(positions)
+    inner[np.array(EDGE_LANDMARKS) - FIRST_INNER] = edge_points(face, camera)
     points = np.vstack([jaw, inner, _pupils(face)])
     pixels = camera.project(points)
     pupil_tolerance = 0.6  # [mm]; a shut lid lies one millimetre in front of the pupil
-    tolerance = np.full(len(points) - JAW_COUNT, MOST_BEHIND)
+    tolerance = np.full(len(points) - JAW_COUNT, FARTHEST_SURFACE)
     tolerance[-len(EYE_SIDES) :] = pupil_tolerance
     visible = np.concatenate(
         [
@@ -68,7 +71,7 @@ def jaw_on_bone(
 ) -> Landmarks:
     """Return the rig's landmarks of the jaw, which stay on the bone when the head turns."""
     points = face.marked[:JAW_COUNT]
-    tolerance = np.full(JAW_COUNT, MOST_BEHIND)
+    tolerance = np.full(JAW_COUNT, FARTHEST_SURFACE)
     visible = _is_on_surface(points, tolerance, camera, depth)
     pixels = camera.project(points)
     return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
@@ -156,13 +159,27 @@ def _pupils(face: Face) -> Floats64:
 def _is_on_surface(
     points: Floats64, tolerance: Floats64, camera: CameraLabels, depth: Floats32
 ) -> Flags:
-    """Return which points (n, 3) are within `tolerance` [mm] of the nearest surface, (n,)."""
-    seen, is_inside = _values_at(camera.project(points), depth)
-    depths = camera.to_camera(points)[:, 2]
-    # The depth may change by a pixel's width within a pixel.
-    tolerance = np.maximum(tolerance, depths / camera.intrinsics[0, 0])
+    """Return which points (n, 3) are within `tolerance` [mm] of a surface in the picture, (n,).
+
+    The nearest surface is searched in all pixels up to the largest tolerance away, because lids,
+    lips and wings of the nose bend away from the camera at their edges.
+    """
+    middles = camera.project(points)
+    seen_points = camera.to_camera(points)
+    focal = camera.intrinsics[0, 0]
+    reach = int(np.ceil(tolerance.max() * focal / seen_points[:, 2].min()))
+    steps = np.arange(-reach, reach + 1)
+    around = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    pixels = np.floor(middles)[:, None] + 0.5 + around
+    depths, is_inside = _values_at(pixels.reshape(-1, 2), depth)
+    surface = camera.from_picture(pixels.reshape(-1, 2), depths).reshape(*pixels.shape[:2], 3)
+    distances = np.linalg.norm(surface - seen_points[:, None], axis=2)
     # Background has the depth 0.
-    return np.asarray(is_inside & (seen > 0.0) & (np.abs(seen - depths) <= tolerance))
+    is_surface = (is_inside & (depths > 0.0)).reshape(distances.shape)
+    nearest = np.where(is_surface, distances, np.inf).min(axis=1)
+    # The surface may come nearer by a pixel's width within a pixel.
+    tolerance = np.maximum(tolerance, seen_points[:, 2] / focal)
+    return np.asarray(_values_at(middles, depth)[1] & (nearest <= tolerance))
 
 
 def _is_uncovered(points: Floats64, camera: CameraLabels, depth: Floats32) -> Flags:
