@@ -32,15 +32,18 @@ class LidAxes(NamedTuple):
         away = points - self.centre
         return np.arctan2(away @ self.up, away @ self.forward)
 
+    def reach(self, points: Floats64) -> Floats64:
+        """Distance of points (n, 3) from the axis through the eyeball's centre [mm], (n,)."""
+        away = points - self.centre
+        return np.hypot(away @ self.up, away @ self.forward)
+
     def reach_by_column(self, line: Floats64, places: Floats64) -> Floats64:
         """Distance of a line (k, 3) from the axis through the eyeball's centre [mm], by column.
 
         places: columns, shape (n,).
         """
         line = line[np.argsort(self.column(line), kind="stable")]
-        away = line - self.centre
-        reach = np.hypot(away @ self.up, away @ self.forward)
-        by_column: Floats64 = np.interp(places, self.column(line), reach)
+        by_column: Floats64 = np.interp(places, self.column(line), self.reach(line))
         return by_column
 
     def column(self, points: Floats64) -> Floats64:

@@ -101,9 +101,31 @@ def turn_above(
     corner_end = 4.0  # mm beside a corner, where lids of some meshes have a rim before their edge
     at_corner = smoothstep((np.abs(column - 0.5) - 0.38) / 0.1)
     ends = plate[1] + at_corner * (corner_end - plate[1])
-    beyond = smoothstep((distance - plate[0]) / (ends - plate[0]))
+    front = surface.positions[edge]
+    rise = _rise_above(surface.positions, axes, front, edge_angles[0])
+    rise = np.minimum(distance, rise)
+    beyond = smoothstep((rise - plate[0]) / (ends - plate[0]))
     turn = turned.of_edges + beyond * (far - turned.of_edges)
     return np.where(np.isfinite(distance), turn, np.nan)
+
+
+def _rise_above(points: Floats64, axes: LidAxes, edge: Floats64, edge_angles: Floats64) -> Floats64:
+    """Height of points above the front edge of an upper lid [mm], shape (V,), at least 0.
+
+    The rim of a thick lid is round. Its foremost row lies hardly above the edge, though the way
+    there along the skin is long. Ways behind the edge, and beside the opening, count too.
+
+    points: all vertices (V, 3) [mm]. edge: the front edge, (k, 3) [mm]. edge_angles: its angle by
+        column [rad], shape (LID_COLUMNS,).
+    """
+    column = axes.column(points)
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
+    reach = axes.reach(points)
+    high = reach * np.maximum(axes.angle(points) - np.interp(column, where, edge_angles), 0.0)
+    behind = np.maximum(axes.reach_by_column(edge, column) - reach, 0.0)
+    beside = np.maximum(np.abs(column - 0.5) - 0.5, 0.0) * np.linalg.norm(axes.axis)
+    rise: Floats64 = np.linalg.norm([high, behind, beside], axis=0)
+    return rise
 
 
 _HALF_DISTANCE = ((-0.2, 0.2, 0.6, 1.0), (4.7, 3.7, 3.1, 2.9))
