@@ -96,6 +96,7 @@ class OneLid(NamedTuple):
     slide: Floats64  # (V,) share of the slide
     near: Flags  # (V,) near the margin
     front: Floats64  # (LID_COLUMNS,) rad, angle to the front edge
+    sag: Floats64  # (LID_COLUMNS,) rad from the edge, of straight pieces, to the arc it stands for
 
 
 def one_lid(
@@ -121,7 +122,36 @@ def one_lid(
         slide=on_lid * _fading_weight(distance, 0.0, slide_reach * eyes.lid_reach),
         near=on_lid & (distance < margin_reach) & (column > -0.02) & (column < 1.02),
         front=np.interp(where, columns, axes.angle(edge)),
+        sag=_sag_by_column(edge, columns, where) / axes.reach_by_column(edge, where),
     )
+
+
+def _sag_by_column(edge: Floats64, columns: Floats64, where: Floats64) -> Floats64:
+    """Return the sag of the straight pieces of a front edge below an arc around the eye [mm].
+
+    edge: vertices (k, 3) by column. columns: their columns (k,). where: columns of the result.
+    """
+    curvature_radius = 14.0  # mm: an eyeball with the skin before it
+    length = np.linalg.norm(np.diff(edge, axis=0), axis=1)
+    piece = np.clip(np.searchsorted(columns, where) - 1, 0, len(length) - 1)
+    width = np.maximum(np.diff(columns)[piece], 1e-6)
+    place = np.clip((where - columns[piece]) / width, 0.0, 1.0)
+    sag: Floats64 = length[piece] ** 2 / (2.0 * curvature_radius) * place * (1.0 - place)
+    return sag
+
+
+def margin_of(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
+    """Return the margin of a lid itself, up to the arc of its front edge, shape (V,).
+
+    The front edge of a lid of few vertices runs below that arc; skin between them is margin, too.
+
+    sign: 1 for the upper lid, -1 for the lower one. column, angle: of each vertex (V,).
+    """
+    edge_turn = 1e-3  # rad
+    where = np.linspace(0.0, 1.0, LID_COLUMNS)
+    above = sign * (angle - np.interp(column, where, lid.front))
+    within: Flags = lid.near & (above < np.interp(column, where, lid.sag) + edge_turn)
+    return within
 
 
 def _fading_weight(distance: Floats64, plateau: float, reach: float) -> Floats64:

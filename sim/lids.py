@@ -33,7 +33,15 @@ import numpy as np
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64
 from ..geometry.steps import smoothstep
 from .landmarks import EYE_LANDMARKS
-from .lid_edges import LID_COLUMNS, LidAxes, OneLid, front_edges, one_lid, side_with_edges
+from .lid_edges import (
+    LID_COLUMNS,
+    LidAxes,
+    OneLid,
+    front_edges,
+    margin_of,
+    one_lid,
+    side_with_edges,
+)
 from .lid_fold import blended_turn, turn_above
 from .lid_lift import laid_on_ball, lift_off
 from .lid_motion import LidVertices, shut_state
@@ -259,7 +267,7 @@ def _one_eye(
     # The line where closed lids meet.
     seam = lowered_corners(raised_at_corners(plain_seam, upper.front), pressed)
     meeting = np.interp(arrives, where, seam)
-    margins = _lid_margin(upper, 1.0, column, angle) | _lid_margin(lower, -1.0, column, angle)
+    margins = margin_of(upper, 1.0, column, angle) | margin_of(lower, -1.0, column, angle)
     margins[np.concatenate(edges)] = True
     closing = np.where(margins, meeting - angle, 0.0)
     turned = blended_turn(x, edges, closing, side, weight)
@@ -314,14 +322,6 @@ def _both_lids(
     upper = one_lid(eyes, surface, axes, upper_edge, side > 0.0, upper_ends)
     lower = one_lid(eyes, surface, axes, lower_edge, side < 0.0, lower_ends)
     return upper, lower
-
-
-def _lid_margin(lid: OneLid, sign: float, column: Floats64, angle: Floats64) -> Flags:
-    """The margin of a lid itself, up to its front edge, shape (V,)."""
-    edge_turn = 1e-3  # rad
-    where = np.linspace(0.0, 1.0, LID_COLUMNS)
-    within: Flags = lid.near & (sign * (angle - np.interp(column, where, lid.front)) < edge_turn)
-    return within
 
 
 def _smoothed_opening(height: Floats64) -> Floats64:

@@ -11,10 +11,18 @@ from risorius.assets.identities import make_person, sample_identity
 from risorius.geometry.sides import sides_of
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import EYE_LANDMARKS, Side
-from risorius.sim.lid_edges import LID_COLUMNS, LidAxes, front_edges, side_with_edges
+from risorius.sim.lid_edges import (
+    LID_COLUMNS,
+    LidAxes,
+    front_edges,
+    margin_of,
+    one_lid,
+    side_with_edges,
+)
 from risorius.sim.lid_fold import SkinTurn, blended_turn, turn_above
 from risorius.sim.lid_seam import lowered_corners, raised_at_corners
 from risorius.sim.lids import lid_axes
+from risorius.sim.rig import Eyes
 from risorius.sim.skull import Eyeball
 from risorius.sim.surface import build_surface
 from tests.sim.poses import both_sides, settled_displacement
@@ -188,22 +196,31 @@ def test_skin_in_front_of_an_edge_moves_along():
     assert below.of_edges[5] == 0.0
 
 
+def lid_of_rows(beside, angles, reaches):
+    """A lid around an eyeball at the origin, and its axes; corners lie at x = -12 and x = 12 mm.
+
+    beside: x of each column [mm]. angles [rad] and reaches [mm]: of each row, from the edge upward.
+    """
+    turned = np.stack([np.sin(angles), np.cos(angles)], axis=1) * np.asarray(reaches)[:, None]
+    points = np.array([[x, y, z] for y, z in turned for x in beside])
+    width = len(beside)
+    first = np.array(
+        [row * width + column for row in range(len(angles) - 1) for column in range(width - 1)]
+    )
+    lower = np.stack([first, first + 1, first + width], axis=1)
+    upper = np.stack([first + 1, first + width + 1, first + width], axis=1)
+    corner = np.array([-12.0, 0.0, 0.0])
+    axes = LidAxes(np.zeros(3), np.eye(3)[1], np.eye(3)[2], corner, -2.0 * corner)
+    return build_surface(points, np.vstack([lower, upper]).astype(np.int32)), axes
+
+
 def test_the_round_rim_of_a_thick_lid_turns_whole():
     """The foremost row of a thick rim turns with its edge, though the way there is 1.7 mm long.
 
     On MakeHuman's lids it stopped 5 degrees too high, and the seam of shut eyes had teeth.
     """
     angles = np.radians([16.0, 16.5, 25.0])  # the edge, the foremost row, and the fold
-    reaches = np.array([15.0, 16.7, 17.5])  # mm
-    beside = np.linspace(-12.0, 12.0, 9)
-    turned = np.stack([np.sin(angles), np.cos(angles)], axis=1) * reaches[:, None]
-    points = np.array([[x, y, z] for y, z in turned for x in beside])
-    first = np.array([row * 9 + column for row in range(2) for column in range(8)])
-    lower = np.stack([first, first + 1, first + 9], axis=1)
-    upper = np.stack([first + 1, first + 10, first + 9], axis=1)
-    surface = build_surface(points, np.vstack([lower, upper]).astype(np.int32))
-    corner = np.array([-12.0, 0.0, 0.0])
-    axes = LidAxes(np.zeros(3), np.eye(3)[1], np.eye(3)[2], corner, -2.0 * corner)
+    surface, axes = lid_of_rows(np.linspace(-12.0, 12.0, 9), angles, [15.0, 16.7, 17.5])
     edge_angles = np.full(LID_COLUMNS, angles[0]), np.full(LID_COLUMNS, -0.2)
     turn = np.full(27, -0.2 - angles[0])
     above = turn_above(
@@ -212,3 +229,16 @@ def test_the_round_rim_of_a_thick_lid_turns_whole():
     middle = above[[4, 13, 22]]
     assert_allclose(middle[1], middle[0], atol=np.radians(0.1))
     assert middle[2] > 0.8 * middle[0]
+
+
+@pytest.mark.parametrize(("columns", "is_margin"), [(4, True), (13, False)])
+def test_skin_under_the_arc_of_a_coarse_edge_is_margin(columns, is_margin):
+    """Skin 0.3 mm above a straight piece of 8 mm belongs to the margin, above one of 2 mm not.
+
+    The rear of a rim stayed up in shut eyes of 1300 triangles, and tore a hole through the lid.
+    """
+    angles = np.radians([16.0, 17.2, 30.0])
+    surface, axes = lid_of_rows(np.linspace(-12.0, 12.0, columns), angles, [15.0, 14.9, 17.0])
+    edge = np.arange(columns, dtype=np.int32)
+    lid = one_lid(Eyes(), surface, axes, edge, np.ones(3 * columns, bool), (1.0, 9.0))
+    assert margin_of(lid, 1.0, np.array([0.5]), angles[1:2])[0] == is_margin
