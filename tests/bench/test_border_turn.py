@@ -10,8 +10,9 @@ from numpy.linalg import norm
 
 from risorius import refine
 from risorius.bench.reproduce.border_turn import BorderTurn
+from risorius.geometry.directions import unit_vectors
 from tests import meshes
-from tests.refine.cases import kahler, soups
+from tests.refine.cases import as_lists, kahler, soups
 from tests.refine.plain_schemes import is_corner
 from tests.refine.plain_twin import Surroundings
 
@@ -124,10 +125,11 @@ def test_needs_are_continuous(seed, amplitude):
 
 def plain_metric(mesh, normals, pose, rest_normals):
     """The criterion again, with dictionaries, from the description in its file."""
-    around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
+    _, faces = as_lists(mesh.vertices, mesh.faces)
+    around = Surroundings(faces)
 
     def unit(a, b, points):
-        return np.asarray((points[b] - points[a]) / norm(points[b] - points[a]))
+        return unit_vectors(points[b] - points[a])
 
     def turn(v, points, n):
         p, q = sorted(around.border_ring[v])

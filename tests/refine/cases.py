@@ -55,7 +55,7 @@ class GivenMetric(refine.Criterion):
         """Geomorph weights that blending computes from the metrics, in the simple twin's form."""
         once = np.clip(self.metric / RAMP_WIDTH, 0, 1)
         twice = np.clip((self.metric - 1) / RAMP_WIDTH, 0, 1)
-        names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
+        names = [plain_twin.edge_name(a, b) for a, b in edges]
         return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
 
 
@@ -78,7 +78,9 @@ def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
     """Names of the last frame's vertices, in the form of the simple twin."""
     names: list[plain_twin.Name] = []
     for vertices, weights in zip(origins.vertices, origins.weights, strict=True):
-        parts = sorted((int(v), 4 * float(w)) for v, w in zip(vertices, weights, strict=True) if w)
+        quarters = (4.0 * weights).tolist()
+        shares = zip(vertices.tolist(), quarters, strict=True)
+        parts = sorted((vertex, share) for vertex, share in shares if share)
         if len(parts) == 3:
             names.append(("centre", *(v for v, _ in parts)))
         elif len(parts) == 1:
@@ -143,7 +145,7 @@ def surface_at(
     origins = refiner.origins()
     result = np.full((len(faces), len(places), 6), np.nan)
     rows = np.concatenate([refined.positions, refined.normals], axis=1).astype(np.float64)
-    is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()])
+    is_proper = np.array([plain_twin.is_proper(face) for face in faces.tolist()])
     is_shown = is_proper[refined.source]
     corners = refined.triangles[is_shown]
     source = refined.source[is_shown]

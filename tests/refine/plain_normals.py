@@ -5,6 +5,7 @@ normal at a point is the sum of the cross products of its fan's triangles, scale
 """
 
 from collections import Counter, defaultdict
+from itertools import pairwise
 
 from tests.refine.plain_schemes import Face, dot
 from tests.refine.plain_twin import (
@@ -72,7 +73,9 @@ class RefinedNormals(Rules):
             middles = [whole.points[name][2] for name in names]
             # 0.511 x (middle - half of both ends), summed over the edges; each corner is an end of
             # two edges.
-            centre = mix(*((1 / 3 - 0.511, p) for p in corners), *((0.511, m) for m in middles))
+            of_ends = [(1 / 3 - 0.511, corner) for corner in corners]
+            of_edges = [(0.511, middle) for middle in middles]
+            centre = mix(*of_ends, *of_edges)
             for i in range(3):
                 k = (i + 1) % 3
                 here = face[i]
@@ -101,7 +104,7 @@ class RefinedNormals(Rules):
         """The scheme's middle; its normal is turned to the area vector of the hexagon around it."""
         point, normal = self.rules.centre(source, point, normal, grown)
         outline = self.fans[source]
-        pieces = [area(outline[0], outline[i], outline[i + 1]) for i in range(1, 5)]
+        pieces = [area(outline[0], here, there) for here, there in pairwise(outline[1:])]
         hexagon = unit(mix(*((1, piece) for piece in pieces)))
         soon = min(1.0, 3.0 * grown[0])
         return point, unit(mix((1 - soon, normal), (soon, hexagon)))

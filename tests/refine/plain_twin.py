@@ -60,7 +60,10 @@ def unit(vector: Vector) -> Vector:
 
 def cross(u: Vector, v: Vector) -> Vector:
     """Cross product of two vectors."""
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+    x = u[1] * v[2] - u[2] * v[1]
+    y = u[2] * v[0] - u[0] * v[2]
+    z = u[0] * v[1] - u[1] * v[0]
+    return x, y, z
 
 
 def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vector]:
@@ -73,15 +76,16 @@ def normals_along(first: Vector, middle: Vector, last: Vector) -> dict[int, Vect
 
 
 def edge_name(a: int, b: int) -> EdgeName:
-    """The name of an edge, the same for both of its directions."""
-    return (a, b) if a < b else (b, a)
+    """The name of an edge, the same for both of its directions; ends may be numpy's integers."""
+    low, high = sorted((int(a), int(b)))
+    return low, high
 
 
 def splits_of(edges: Iterable[Iterable[int]], metric: Iterable[float]) -> dict[EdgeName, int]:
     """Splits of edges by their names: one if the metric is above 0, two if it is above 1."""
     splits = {}
     for (a, b), needed in zip(edges, metric, strict=True):
-        splits[edge_name(int(a), int(b))] = int(needed > 0) + int(needed > 1)
+        splits[edge_name(a, b)] = int(needed > 0) + int(needed > 1)
     return splits
 
 
@@ -147,8 +151,10 @@ def moved_vertex(v: int, positions: list[Vector], around: Surroundings) -> Vecto
         return mix((0.75, positions[v]), *((0.125, positions[u]) for u in border))
     if border or not ring:
         return positions[v]
-    beta = 3 / 16 if len(ring) == 3 else 3 / (8 * len(ring))
-    return mix((1 - len(ring) * beta, positions[v]), *((beta, positions[u]) for u in ring))
+    valence = len(ring)
+    beta = 3 / 16 if valence == 3 else 3 / (8 * valence)
+    neighbours = [(beta, positions[u]) for u in ring]
+    return mix((1 - valence * beta, positions[v]), *neighbours)
 
 
 def first_level_point(edge: EdgeName, positions: list[Vector], around: Surroundings) -> Vector:
@@ -236,7 +242,8 @@ def refine(
             twin.normals["edge", a, b, quarters] = place.point_normals[a, b][quarters]
     for source, face in enumerate(faces):
         edges = edge_names(face)
-        if geomorph is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
+        split_count = sum(count[e] for e in edges)
+        if geomorph is not None and is_proper(face) and split_count > 1:
             fan, centre = _fan(twin, face, count, grown)
             once = [grown.get(e, (0.0, 0.0))[0] for e in edges]
             twice = [grown[e][1] if count[e] == 2 else 0.0 for e in edges]

@@ -12,8 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius import refine
+from risorius.geometry.sides import sides_of
 from tests import meshes
 from tests.refine.cases import places_in_source, soups
+from tests.refine.plain_twin import is_proper
 
 DOUBLE_CONES = st.builds(meshes.double_cone, st.integers(3, 60))
 IRREGULAR_MESHES = st.builds(
@@ -64,10 +66,11 @@ def in_other_order(array, order):
 
 def borders(mesh, face, pieces, names):
     """Output rows along the three edges of an input triangle, from the border of its pieces."""
-    sides = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in pieces for i in range(3))
+    sides = Counter(map(tuple, sides_of(pieces).tolist()))
     assert max(sides.values()) == 1
-    following = {a: b for a, b in sides if (b, a) not in sides}
-    assert len(following) == sum((b, a) not in sides for a, b in sides)
+    border = [(a, b) for a, b in sides if (b, a) not in sides]
+    following = dict(border)
+    assert len(following) == len(border)
     (start,) = [row for row in following if names[row] == face[0]]
     loop = [start]
     while following[loop[-1]] != start:
@@ -150,7 +153,8 @@ def assert_linear(refiner, mesh, faces, corner_values):
     `corner_values`: (F, 3, 2).
     """
     origins = refiner.origins()
-    proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
+    is_proper_face = np.array([is_proper(face) for face in faces.tolist()])
+    proper = is_proper_face[mesh.source]
     triangles = mesh.triangles[proper]
     source = mesh.source[proper]
     places = places_in_source(origins, triangles, faces[source])

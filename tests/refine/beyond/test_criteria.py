@@ -5,6 +5,7 @@ import pytest
 from numpy.linalg import norm
 
 from risorius import refine
+from risorius.geometry.directions import unit_vectors
 from tests import meshes
 from tests.refine.cases import Forced, kahler, scheme_of
 
@@ -112,9 +113,11 @@ def plain_measure(kind, positions, normals, edges, most):
         if kind is refine.NormalDrop:
             values.append(-cosine)
         else:
-            to_eye = [(EYE - positions[v]) / norm(EYE - positions[v]) for v in (a, b)]
-            facing = [float(normals[v] @ s) for v, s in zip((a, b), to_eye, strict=True)]
-            aside = 0.0 if facing[0] * facing[1] <= 0 else min(map(abs, facing))
+            facing_a, facing_b = (
+                float(normals[end] @ unit_vectors(EYE - positions[end])) for end in (a, b)
+            )
+            is_outline = facing_a * facing_b <= 0
+            aside = 0.0 if is_outline else min(abs(facing_a), abs(facing_b))
             values.append(min(1 - cosine, most) * max(0.0, 1 - aside / 0.3))
     return np.array(values)
 

@@ -31,7 +31,8 @@ def bumpy(columns, rows):
     vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
     x = vertices[:, 0]
     y = vertices[:, 1]
-    vertices[:, 2] = 0.1 * np.sin(4.0 * x) * np.cos(5.0 * y) + 0.2 * np.sin(x)
+    bumps = 0.1 * np.sin(4.0 * x) * np.cos(5.0 * y)
+    vertices[:, 2] = bumps + 0.2 * np.sin(x)
     return meshes.Mesh(vertices, grid.faces)
 
 

@@ -157,7 +157,8 @@ def test_a_cover_bends_outward_only(is_valley):
         for scheme in (refine.CubicScheme(), refine.CubicScheme(covers=covers))
     )
     a, b = plain.edges.T
-    is_inner = (y[a] == y[b]) & (y[a] > 0.0) & (y[a] < y.max())
+    lies_along_x = y[a] == y[b]
+    is_inner = lies_along_x & (y[a] > 0.0) & (y[a] < y.max())
     chords = 0.5 * (vertices[a] + vertices[b])[is_inner]
     bends = []
     for refiner in (plain, covered):

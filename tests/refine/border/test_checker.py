@@ -102,8 +102,9 @@ def test_t_junction(frame):
     refiner, refined, deformed = frame
     counts = np.bincount(refined.source)
     source = int(np.flatnonzero(counts > 1)[0])
-    edges = [set(edge) for edge in refiner.edges[refiner.triangle_edges[source]].tolist()]
-    corners = [(edges[k - 1] & edges[k]).pop() for k in range(3)]
+    edges = refiner.edges[refiner.triangle_edges[source]].tolist()
+    first, second, third = map(set, edges)
+    corners = [*(third & first), *(first & second), *(second & third)]
     keep = refined.source != source
     whole = refined._replace(
         triangles=np.concatenate([refined.triangles[keep], np.array([corners], dtype=np.uint32)]),

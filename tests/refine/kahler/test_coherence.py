@@ -7,6 +7,7 @@ import pytest
 from pytest import approx
 
 from risorius import refine
+from risorius.geometry.sides import side_lengths, sides_of
 from risorius.refine.kahler import coherence, table
 from risorius.refine.kahler.frame import buffers_for
 from tests.refine.cases import configuration_of
@@ -28,8 +29,7 @@ def subtriangles_of(state):
 
 def inner_lines(state):
     """Sides of subtriangles inside the triangle, as pairs of points."""
-    triangles = subtriangles_of(state).tolist()
-    sides = [(t[k], t[(k + 1) % 3]) for t in triangles for k in range(3)]
+    sides = {tuple(side) for side in sides_of(subtriangles_of(state)).tolist()}
     return {(a, b) for a, b in sides if a < b and (b, a) in sides}
 
 
@@ -116,7 +116,8 @@ CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 def length_of_lines(state):
     """Total length of the inner lines of a sequence."""
     places = table.POINT_COORDINATES / 4.0 @ CORNERS
-    return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
+    lines = np.array([*inner_lines(state)], int).reshape(-1, 2)
+    return side_lengths(places, lines).sum()
 
 
 @pytest.mark.parametrize("length", range(4))

@@ -47,7 +47,10 @@ def inner_lines(refiner, mesh):
 
 def turned(before, now, rows):
     """Lines of the previous frame that are missing, although `rows` still has their ends."""
-    return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
+    missing = [
+        (source, start, end) for source, start, end in before - now if start in rows and end in rows
+    ]
+    return sorted(missing)
 
 
 def history_of(refiner):

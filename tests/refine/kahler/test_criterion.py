@@ -6,7 +6,7 @@ import pytest
 from risorius import refine
 from risorius.refine.kahler.criterion import DROP_ROUNDING
 from tests import meshes
-from tests.refine.cases import Forced, kahler
+from tests.refine.cases import Forced, as_lists, kahler
 from tests.refine.plain_twin import edge_dots, edge_name
 
 
@@ -50,14 +50,14 @@ def test_splits_follow_drops(seed):
     """Each edge is split according to its drop of the dot product, computed in plain arithmetic."""
     mesh = meshes.irregular(seed)
     deformed = meshes.wrinkled(mesh, seed + 100, amplitude=0.5)
-    faces = [tuple(int(v) for v in face) for face in mesh.faces]
-    rest = edge_dots([tuple(p) for p in mesh.vertices], faces)
-    now = edge_dots([tuple(p) for p in deformed], faces)
+    rest = edge_dots(*as_lists(mesh.vertices, mesh.faces))
+    now = edge_dots(*as_lists(deformed, mesh.faces))
     refiner = kahler(mesh, threshold_once=0.1, threshold_twice=0.3)
     refiner.refine(deformed)
     seen = set()
     for (a, b), split in zip(refiner.edges, refiner.splits, strict=True):
-        drop = rest[edge_name(int(a), int(b))] - now[edge_name(int(a), int(b))]
+        edge = edge_name(a, b)
+        drop = rest[edge] - now[edge]
         if min(abs(drop - 0.1), abs(drop - 0.3)) > 1e-5:
             assert split == int(drop > 0.1) + int(drop > 0.3)
             seen.add(int(split))

@@ -25,7 +25,7 @@ def refine_and_check(mesh, deformed, **options):
 
 def assert_is_twin(mesh, deformed, refiner, refined, *, normals_cancel=False):
     """Check that a frame equals the simple twin's for these splits."""
-    ends = [edge_name(int(a), int(b)) for a, b in refiner.edges]
+    ends = [edge_name(a, b) for a, b in refiner.edges]
     splits = dict(zip(ends, refiner.splits.tolist(), strict=True))
     twin = refine_plainly(*as_lists(deformed, mesh.faces), splits)
     assert_equals_twin(refiner, refined, twin, normals_cancel=normals_cancel)

@@ -45,5 +45,6 @@ def test_second_level_by_hand():
     r = (a + d) / 2
     s = (b + d) / 2
     assert height[4] == 3 / 8 * (moved_a + m) + (p + r) / 8
-    assert height[5] == 5 / 8 * m + (moved_a + moved_b + p + q + r + s) / 16
+    ring = [moved_a, moved_b, p, q, r, s]
+    assert height[5] == 5 / 8 * m + sum(ring) / 16
     assert height[6] == 3 / 8 * (moved_b + m) + (q + s) / 8
