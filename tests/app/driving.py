@@ -167,15 +167,15 @@ def clear_search(viewer: Viewer) -> None:
 
 
 def moved(viewer: Viewer) -> float:
-    """Distance of the farthest vertex from rest [mm]."""
-    return float(np.abs(viewer.session.scene.positions - viewer.session.scene.rest_positions).max())
+    """The largest change of a vertex's coordinate since rest [mm]."""
+    scene = viewer.session.scene
+    return float(np.abs(scene.positions - scene.rest_positions).max())
 
 
 def nose(viewer: Viewer) -> tuple[int, int]:
     """Screen coordinates of the tip of the nose."""
-    return seen_at(
-        viewer, viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()]
-    )
+    positions = viewer.session.scene.positions
+    return seen_at(viewer, positions[positions[:, 2].argmax()])
 
 
 def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:

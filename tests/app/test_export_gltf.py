@@ -206,7 +206,8 @@ def test_the_texture_is_the_right_way_up(clip, glb):
     here = (player.attribute("skin", "TEXCOORD_0") * size).astype(int).clip(0, size - 1)
     uv = np.zeros((len(skin.rest), 2))
     uv[skin.faces] = skin.uv[skin.face_uv]
-    there = (np.column_stack([uv[:, 0], 1.0 - uv[:, 1]]) * size).astype(int).clip(0, size - 1)
+    downward = uv * [1.0, -1.0] + [0.0, 1.0]  # v of glTF grows downward
+    there = (downward * size).astype(int).clip(0, size - 1)
     expected = albedo[there[:, 1], there[:, 0]].astype(np.float64)
     assert np.abs(image[here[:, 1], here[:, 0]] - expected).mean() < 4.0
     assert expected.std(axis=0).min() > 8.0  # otherwise any coordinate would pass
@@ -306,8 +307,10 @@ def test_targets_have_the_names_and_the_forms_of_an_avatar(clip, glb):
     """
     player = Player(glb)
     names = player.target_names("skin")
-    assert tuple(names[:52]) == ARKIT_SHAPES
-    assert names[52:] == [f"residual {number + 1}" for number in range(len(names) - 52)]
+    named = names[:52]
+    residual = names[52:]
+    assert tuple(named) == ARKIT_SHAPES
+    assert residual == [f"residual {number}" for number, _ in enumerate(residual, start=1)]
     shapes = player.shapes("skin")
     for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight"):
         moved = rest_in(clip.scene.clone(), {name: 1.0}).skin - clip.skin.rest

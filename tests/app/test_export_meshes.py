@@ -1,5 +1,6 @@
 """Exported meshes, read by readers of other projects, and compared in millimetres."""
 
+import re
 import struct
 import zipfile
 
@@ -236,9 +237,10 @@ def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
 
 def triangles_in(path):
     """Corners and normals of all triangles in an OBJ file, in order, shape (F, 3, 3)."""
-    lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
-    corners = np.array([[corner.split("/") for corner in line] for line in lines], int) - 1
-    return obj_rows(path, "v")[corners[..., 0], :3], obj_rows(path, "vn")[corners[..., 2]]
+    lines = [line for line in path.read_text().splitlines() if line.startswith("f ")]
+    cells = re.findall(r"(\d+)/\d*/(\d+)", "\n".join(lines))
+    vertices, normals = np.array(cells, int).reshape(-1, 3, 2).transpose(2, 0, 1) - 1
+    return obj_rows(path, "v")[vertices, :3], obj_rows(path, "vn")[normals]
 
 
 @pytest.mark.slow

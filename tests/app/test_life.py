@@ -101,9 +101,10 @@ def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
 
 def life_blinks(life, seconds=30.0):
     """The times in the first seconds of a life at which lids begin to close."""
-    frames = range(round(60.0 * seconds))
-    drawn = [0.0, *(life.parts(frame / 60.0)["lids"][f"{LID_CONTROL}_left"] for frame in frames)]
-    return [frame / 60.0 for frame in frames if drawn[frame + 1] == 1.0 > drawn[frame]]
+    times = [frame / 60.0 for frame in range(round(60.0 * seconds))]
+    drawn = [life.parts(time)["lids"][f"{LID_CONTROL}_left"] for time in times]
+    moments = zip(times, [0.0, *drawn], drawn, strict=False)
+    return [time for time, before, now in moments if before < 1.0 == now]
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])

@@ -68,8 +68,9 @@ def test_every_frame_has_its_passes_beside_it(tmp_path):
     pixels = np.loadtxt(f"{stem}_ldmks.txt")
     assert pixels.shape == (70, 2)
     assert np.abs(pixels - labels["landmarks"]["pixels"]).max() < 0.001
-    camera = {name: np.array(labels["camera"][name]) for name in ("K", "R", "t")}
-    seen = (np.array(labels["landmarks"]["points"]) @ camera["R"].T + camera["t"]) @ camera["K"].T
+    points = np.array(labels["landmarks"]["points"])
+    matrix, turn, shift = (np.array(labels["camera"][name]) for name in ("K", "R", "t"))
+    seen = (points @ turn.T + shift) @ matrix.T
     assert np.abs(seen[:, :2] / seen[:, 2:] - pixels).max() < 0.001
     assert labels["controls"] == {"AU12": 1.0}
     assert "head" in labels

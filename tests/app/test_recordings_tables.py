@@ -32,7 +32,8 @@ def german(quoting=csv.QUOTE_MINIMAL, separator=";"):
     """The table with decimal commas."""
     file = io.StringIO()
     writer = csv.writer(file, delimiter=separator, quoting=quoting)
-    writer.writerows([[cell.replace(".", ",") for cell in row] for row in cells()])
+    for row in cells():
+        writer.writerow([cell.replace(".", ",") for cell in row])
     return file.getvalue()
 
 
@@ -49,7 +50,8 @@ def aligned(*, has_row_names=False):
     rows = [[str(number), *row] for number, row in enumerate(cells(), -1)]
     rows[0][0] = ""
     begin = 0 if has_row_names else 1
-    return "\n".join("".join(f"{cell:>14}" for cell in row[begin:]) for row in rows)
+    lines = ["".join(f"{cell:>14}" for cell in row[begin:]) for row in rows]
+    return "\n".join(lines)
 
 
 def of_r_table():

@@ -191,7 +191,10 @@ def test_each_piece_of_a_file_moves_by_its_role(whole, face):
     shapes = {
         name: 100.0 * each / 10.0 for name, each in Player(whole.avatar).shapes("head").items()
     }
-    own = {name: {k: v[place] for k, v in shapes.items()} for name, place in whole.places.items()}
+    own = {
+        piece: {name: moved[place] for name, moved in shapes.items()}
+        for piece, place in whole.places.items()
+    }
     assert own["skin"]["jawOpen"][:, 1].min() < -20.0
     assert own["teeth_lower"]["jawOpen"][:, 1].max() < -5.0
     assert own["gums_lower"]["jawOpen"][:, 1].max() < -5.0
@@ -199,7 +202,7 @@ def test_each_piece_of_a_file_moves_by_its_role(whole, face):
     assert np.abs(own["tongue"]["tongueOut"]).max() > 10.0
     assert own["lashes"]["eyeBlinkLeft"][:, 1].min() < -5.0
     for name in ("hair", "shirt", "teeth_upper"):
-        assert max(np.abs(each).max() for each in own[name].values()) < 0.1, name
+        assert np.abs([*own[name].values()]).max() < 0.1, name
     assert "eyeball, turns with the left eye" in whole.lines
     assert "tongue, bends" in whole.lines
     assert re.search(r"^piece \d+ \(shirt\): \d+ vertices at .*: body", whole.lines, re.M)

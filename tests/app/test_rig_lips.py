@@ -246,7 +246,12 @@ def polygons_of(path):
     """The corners of an OBJ's polygons as absolute numbers."""
     lines = path.read_text().splitlines()
     rows = [line.split()[1:] for line in lines if line.startswith("f ")]
-    return [[int(corner.split("/")[0]) - 1 for corner in row] for row in rows]
+
+    def vertex_of(corner):
+        number, _, _ = corner.partition("/")
+        return int(number) - 1
+
+    return [[vertex_of(corner) for corner in row] for row in rows]
 
 
 def other_lines(lines):

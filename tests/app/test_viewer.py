@@ -282,7 +282,8 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer):
 
     def is_held():
         seen.append(session.scene.positions.copy())
-        return moved(viewer) > 1.0 and bool(np.abs(seen[-1] - seen[-2]).max() < 1e-3)
+        last_step = np.abs(seen[-1] - seen[-2]).max()
+        return moved(viewer) > 1.0 and last_step < 1e-3
 
     drag(viewer, landmark(viewer, 54), (12, -14))
     assert until(viewer, is_held)

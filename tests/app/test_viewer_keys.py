@@ -37,8 +37,10 @@ def test_escape_closes_one_thing_after_another(viewer):
 def test_each_command_has_its_own_name_and_keys(viewer):
     """No two commands share a name or a key."""
     doing = [each for each in viewer.face.commands if each.submenu is None]
-    for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
-        assert len(each) == len({*each})
+    labels = [command.label for command in doing]
+    keys = [key for command in doing for key in command.keys]
+    assert len(labels) == len(set(labels))
+    assert len(keys) == len(set(keys))
 
 
 def test_the_manual_is_read_and_searched(viewer):

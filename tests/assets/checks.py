@@ -24,7 +24,8 @@ def is_manifold(faces: Integers32) -> bool:
     """Whether every edge has one face, or two faces that run along it in opposite directions."""
     directed = sides_of(faces)
     has_no_repeat = len(np.unique(directed, axis=0)) == len(directed)
-    return has_no_repeat and all(len(beside) <= 2 for beside in edge_faces(faces).values())
+    most_faces = max(map(len, edge_faces(faces).values()))
+    return has_no_repeat and most_faces <= 2
 
 
 def component_count(faces: Integers32) -> int:
@@ -83,7 +84,8 @@ def winding_numbers(vertices: Floats64, faces: Integers32, points: Floats64) -> 
     inside-outside segmentation using generalized winding numbers", equation 5 (van Oosterom,
     Strackee 1983).
     """
-    a, b, c = (vertices[faces[:, k]] - points[:, None].astype(float) for k in range(3))
+    corners = vertices[faces] - points[:, None, None].astype(float)
+    a, b, c = np.moveaxis(corners, 2, 0)
     length_a, length_b, length_c = (norm(each, axis=2) for each in (a, b, c))
     volume = (a * np.cross(b, c)).sum(axis=2)
     share = length_a * length_b * length_c

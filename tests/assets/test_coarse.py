@@ -75,12 +75,12 @@ def test_roots_of_lashes_lie_below_the_edge_of_the_lid(coarse, head):
     roots = read_image(head.file_beside("_lids.png"), mode="L") / 255.0
     in_front = (384, int(head.mirror[384]))  # on the front of each lid, above its outer corner
     is_front = np.isin(coarse.file_vertices[coarse.faces], in_front).any(axis=1)
-    steps = np.linspace(0.0, 1.0, 30)
-    shares = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b <= 1.0])
-    places = shares @ coarse.uv[coarse.faces[is_front]]
-    rows = 1.0 - places[..., 1]
-    columns = places[..., 0]
-    dark = roots[(rows * len(roots)).astype(int), (columns * len(roots)).astype(int)]
+    first, second = np.meshgrid(*[np.linspace(0.0, 1.0, 30)] * 2)
+    shares = np.stack([first, second, 1.0 - first - second], axis=-1)[first + second <= 1.0]
+    u, v = np.moveaxis(shares @ coarse.uv[coarse.faces[is_front]], -1, 0)
+    rows = ((1.0 - v) * len(roots)).astype(int)
+    columns = (u * len(roots)).astype(int)
+    dark = roots[rows, columns]
     assert len(dark) >= 12
     assert dark.mean(axis=1).max() < 0.06
 

@@ -128,7 +128,7 @@ def test_persons_are_spread_as_published():
         assert table.mean(axis=0)[list(NORMS).index("sn-prn")] < 1.0, sex
         related = dict(zip(NORMS, np.corrcoef(table.T), strict=True))
         assert related["n-sn"][list(NORMS).index("n-prn")] > 0.5
-        means[sex] = {code: np.mean([x[code] for x in found]) for code in NORMS}
+        means[sex] = {code: np.mean([measures[code] for measures in found]) for code in NORMS}
     for code in ("n-gn", "al-al", "zy-zy", "go-go", "ch-ch"):
         published = NORMS[code].men.mean - NORMS[code].women.mean
         assert means[Sex.MAN][code] - means[Sex.WOMAN][code] > 0.4 * published, code

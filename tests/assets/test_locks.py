@@ -193,7 +193,9 @@ def test_bobs_end_in_tips_and_not_in_teeth(number):
 def test_hairs_of_the_outline_are_fine(name):
     """Except at the whorl, locks of short hair are 0.1 mm wide; they were 0.2 mm, like thorns."""
     parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
-    hair, locks = (next(p for p in parts if p.name == each) for each in ("hair", "hair_locks"))
+    part_called = {part.name: part for part in parts}
+    hair = part_called["hair"]
+    locks = part_called["hair_locks"]
     whorl = hair.vertices[np.argmin(hair.striation[:, 1])]
     roots = locks.vertices[::VERTEX_COUNT]
     is_away = np.linalg.norm(roots - whorl, axis=1) > 60.0

@@ -1,6 +1,7 @@
 """Meshes of users: order is kept, and mistakes are reported."""
 
 import struct
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -121,7 +122,8 @@ def ply(form, lists, element="face", **more):
     if form == "ascii":
         points = [[*xyz, *row] for xyz, row in zip(HOUSE_CORNERS, rows or [[]] * 5, strict=True)]
         body = [*points, *([7, len(each), *each] for each in lists)]
-        return header + "".join(" ".join(map(str, row)) + "\n" for row in body).encode()
+        text = [" ".join(map(str, row)) + "\n" for row in body]
+        return header + "".join(text).encode()
     order = ">" if "big" in form else "<"
     letters = {"uchar": "B", "ushort": "H", "float": "f", "int": "i", "uint": "I"}
     body = b""
@@ -145,7 +147,7 @@ def test_polygons_of_ply_may_be_of_any_sizes(tmp_path, form, lists):
     path.write_bytes(ply(form, lists))
     mesh = assets.read_mesh(path)
     assert mesh.vertices.tolist() == [list(map(float, each)) for each in HOUSE_CORNERS]
-    fans = [[a[0], a[k], a[k + 1]] for a in lists for k in range(1, len(a) - 1)]
+    fans = [[first, *side] for first, *others in lists for side in pairwise(others)]
     assert mesh.faces.tolist() == fans
     assert mesh.colours is None
 

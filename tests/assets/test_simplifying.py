@@ -19,15 +19,16 @@ def with_body(head: Head) -> SkinPiece:
     row_count = 120
     row_height = 10.0  # [mm]
     noise = np.random.default_rng(0)
-    rows = [np.array(neck)]
+    lowest = head.vertices[neck, 1].min()
     vertices = [head.vertices]
     for row in range(1, row_count):
         below = head.vertices[neck] * [1.0, 0.0, 1.0] + noise.normal(0.0, 1.0, (len(neck), 3))
-        below[:, 1] += head.vertices[neck, 1].min() - row_height * row
-        rows.append(len(head.vertices) + (row - 1) * len(neck) + np.arange(len(neck)))
+        below[:, 1] += lowest - row_height * row
         vertices.append(below)
     points = np.vstack(vertices)
-    faces = np.vstack([head.faces, grid_faces(np.array(rows), closed=True)])
+    added = np.arange(len(head.vertices), len(points)).reshape(-1, len(neck))
+    body = grid_faces(np.vstack([neck, added]), closed=True)
+    faces = np.vstack([head.faces, body])
     assert checks.is_manifold(faces)
     return SkinPiece(
         points, faces, head.landmarks, np.arange(len(points), dtype=np.int32), np.arange(len(faces))

@@ -26,9 +26,12 @@ def space() -> IdentitySpace:
     """A model space around the built-in head, with two smooth modes, one of them asymmetric."""
     head = assets.load("head")
     x, y, z = head.vertices.T
-    wide = np.stack([4.0 * np.sin(x / 40.0), 0.0 * y, 2.0 * np.cos(y / 35.0)], axis=1)
-    long = np.stack([0.0 * x, 4.0 * np.sin(y / 50.0), 2.0 * np.sin(x / 30.0 + z / 60.0)], axis=1)
-    modes = np.array([wide, long])
+    modes = np.zeros((2, len(x), 3))
+    wide, long = modes
+    wide[:, 0] = 4.0 * np.sin(x / 40.0)
+    wide[:, 2] = 2.0 * np.cos(y / 35.0)
+    long[:, 1] = 4.0 * np.sin(y / 50.0)
+    long[:, 2] = 2.0 * np.sin(x / 30.0 + z / 60.0)
     return IdentitySpace(head.vertices, head.faces, head.landmarks, modes)
 
 

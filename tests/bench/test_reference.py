@@ -20,16 +20,18 @@ def face():
     x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, CELL_COUNT + 1)] * 2)
     z = 8.0 - 0.05 * (x**2 + y**2) + 0.1 * np.sin(3.0 * x)
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    first = (np.arange(CELL_COUNT)[:, None] * (CELL_COUNT + 1) + np.arange(CELL_COUNT)).ravel()
-    quads = np.stack([first, first + 1, first + CELL_COUNT + 2, first + CELL_COUNT + 1], axis=1)
+    rows = np.arange(VERTEX_COUNT).reshape(CELL_COUNT + 1, -1)
+    corners = [rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]]
+    quads = np.stack(corners, axis=-1).reshape(-1, 4)
     behind = [[VERTEX_COUNT, 0, 1, 2]]
     return np.vstack([vertices, [[0.0, 0.0, -9.0]]]), np.vstack([quads, behind])
 
 
 def obj(vertices, quads):
     """The text of an OBJ file as in the checkout, with texture coordinates."""
-    lines = ["# a head", *("v {:.6f} {:.6f} {:.6f}".format(*each) for each in vertices), "vt 0 0"]
-    lines += ["f " + " ".join(f"{corner + 1}/1" for corner in quad) for quad in quads]
+    places = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in vertices]
+    polygons = [f"f {a}/1 {b}/1 {c}/1 {d}/1" for a, b, c, d in quads + 1]
+    lines = ["# a head", *places, "vt 0 0", *polygons]
     return "\n".join(lines).encode()
 
 
@@ -71,7 +73,8 @@ def test_the_face_and_its_motion(checkout):
     arrays = made(checkout)["face"]
     assert set(arrays) == {"vertices", "triangles", "landmarks68", "jawOpen", "mouthSmile_L"}
     assert_allclose(arrays["vertices"], vertices[:-1], atol=1e-5)
-    assert arrays["triangles"][:2].tolist() == [quads[0, :3].tolist(), quads[0, [0, 2, 3]].tolist()]
+    a, b, c, d = quads[0].tolist()
+    assert arrays["triangles"][:2].tolist() == [[a, b, c], [a, c, d]]
     assert len(arrays["triangles"]) == 2 * CELL_COUNT**2  # none that reaches behind the face
     assert_allclose(arrays["jawOpen"], np.tile(LIFT_VECTOR, (VERTEX_COUNT, 1)), atol=2e-6)
     assert_allclose(arrays["mouthSmile_L"], -arrays["jawOpen"], atol=2e-6)

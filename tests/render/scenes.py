@@ -125,7 +125,9 @@ def at(image: SignedImage, x: float, y: float) -> Integers32:
     """The colour of the pixel at the point (x, y, 0) in the view of `facing`."""
     height, width, _ = image.shape
     scale = 0.5 * height / (250.0 * np.tan(np.radians(12.5)))
-    return np.asarray(image[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])
+    row = int(0.5 * height - y * scale)
+    column = int(0.5 * width + x * scale)
+    return np.asarray(image[row, column])
 
 
 def drawn(image: SignedImage) -> Flags:

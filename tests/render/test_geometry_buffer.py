@@ -15,9 +15,10 @@ def rays(camera, size):
     """Rays through the middles of pixels, one unit long along the camera's axis, (H, W, 3)."""
     width, height = size
     focal = camera.focal(width / height, height)
-    x, y = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    across = (np.arange(width) + 0.5 - width / 2) / focal
+    down = (np.arange(height) + 0.5 - height / 2) / focal
     right, up, back = camera.axes()
-    return np.asarray(x[..., None] / focal * right - y[..., None] / focal * up - back)
+    return across[None, :, None] * right - down[:, None, None] * up - back
 
 
 def drawn(surface, shape, camera, *, parts=()):

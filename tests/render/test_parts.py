@@ -110,8 +110,9 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
             ends = np.array([[-20.0, -7.0, 0.0], [20.0, 7.0, 0.0]])
             side = 0.2 * np.array([[-0.33, 0.94, 0.0], [0.165, -0.47, 0.82], [0.165, -0.47, -0.82]])
             normals = np.vstack([side, side]).astype(np.float32) / 0.2
-            faces = [[k, 3 + (k + 1) % 3, (k + 1) % 3] for k in range(3)]
-            faces += [[k, 3 + k, 3 + (k + 1) % 3] for k in range(3)]
+            faces = []
+            for a, b in ((0, 1), (1, 2), (2, 0)):  # corners of one end; the other end's follow
+                faces += [[a, 3 + b, b], [a, 3 + a, 3 + b]]
             hair = SimpleNamespace(
                 name="hair", bone="cranium", shine=0.0, normals=normals,
                 is_enclosed=True, strand_radius=0.2, striation=None,

@@ -33,11 +33,11 @@ def counting(monkeypatch):
         monkeypatch.setattr(moderngl.Context, name, noting(getattr(moderngl.Context, name)))
 
     def left():
-        held = [each for each in (seen() for seen in made) if each is not None]
+        found = [reference() for reference in made]
         return Counter(
             type(each).__name__
-            for each in held
-            if not isinstance(each.mglo, moderngl.InvalidObject)
+            for each in found
+            if each is not None and not isinstance(each.mglo, moderngl.InvalidObject)
         )
 
     return left

@@ -86,10 +86,15 @@ def test_surfaces_that_touch_have_a_smooth_line_between_them():
     hard, smooth = pictures(turned(joined(*halves), 8.0))
     inner = (slice(30, 66), slice(30, 66))
     ends = np.unique(np.round(hard[inner]))
-    between = (smooth > ends.min() + 3.0) & (smooth < ends.max() - 3.0)
-    assert ends.max() > ends.min() + 20.0
-    assert between[inner].sum() > 15
-    assert not ((hard > ends.min() + 3.0) & (hard < ends.max() - 3.0))[inner].any()
+    darkest = ends.min()
+    brightest = ends.max()
+    assert brightest > darkest + 20.0
+
+    def lies_between(image):
+        return (image > darkest + 3.0) & (image < brightest - 3.0)
+
+    assert lies_between(smooth[inner]).sum() > 15
+    assert not lies_between(hard[inner]).any()
 
 
 def test_the_line_where_a_part_comes_through_is_smooth(renderer):

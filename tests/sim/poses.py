@@ -60,5 +60,7 @@ def without(head: Any, *names: str) -> SimpleNamespace:
 
 def lip_gap(simulation: sim.Simulation, head: Any) -> float:
     """Greatest vertical distance [mm] between inner lip landmarks."""
-    y = simulation.positions[head.landmarks, 1]
-    return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))
+    height = simulation.positions[head.landmarks, 1]
+    upper = height[[61, 62, 63]]
+    lower = height[[67, 66, 65]]
+    return float((upper - lower).max())

@@ -158,9 +158,11 @@ def test_lips_that_move_sideways_fold_no_chin():
     moved = person.vertices + settled_displacement(simulation, {"mouthLeft": 1.0})
     marks = person.vertices[person.landmarks]
     refiner = refine.create("kahler", person.faces, person.vertices)
-    middles = person.vertices[refiner.edges].mean(axis=1)
-    is_chin = (middles[:, 1] < marks[57, 1] - 4.0) & (middles[:, 1] > marks[8, 1] - 4.0)
-    is_chin &= (np.abs(middles[:, 0]) < 40.0) & (middles[:, 2] > marks[8, 2] - 30.0)
+    x, y, z = person.vertices[refiner.edges].mean(axis=1).T
+    lower_lip = marks[57]
+    chin = marks[8]
+    is_chin = (y < lower_lip[1] - 4.0) & (y > chin[1] - 4.0)
+    is_chin &= (np.abs(x) < 40.0) & (z > chin[2] - 30.0)
     resting, bent = (
         dihedral_angles(refiner.connectivity, each) for each in (person.vertices, moved)
     )

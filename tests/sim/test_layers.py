@@ -77,7 +77,8 @@ def test_sides_of_a_pair_add_up_to_the_whole():
     left = wanted(subject, A_left=1.0)
     right = wanted(subject, A_right=1.0)
     assert left == approx(sums_of(0.8, 0.0, 0.3, 0.0))
-    assert wanted(subject, A=1.0) == approx({n: left[n] + right[n] for n in LOWEST_CONTROLS})
+    whole = {name: left[name] + right[name] for name in LOWEST_CONTROLS}
+    assert wanted(subject, A=1.0) == approx(whole)
 
 
 def test_sides_may_be_spelled_as_arkit_does():

@@ -9,7 +9,9 @@ from tests.sim.poses import FRAME_TIME
 def cheek(simulation):
     """Vertices within 12 mm of a vertex on the left cheek."""
     rest = simulation.rest_positions
-    middle = rest[np.abs(rest - rest.mean(axis=0) - (40.0, -20.0, 60.0)).sum(axis=1).argmin()]
+    on_cheek = rest.mean(axis=0) + np.array([40.0, -20.0, 60.0])
+    distances = np.abs(rest - on_cheek).sum(axis=1)
+    middle = rest[distances.argmin()]
     return np.flatnonzero(norm(rest - middle, axis=1) < 12.0)
 
 

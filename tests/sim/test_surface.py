@@ -95,6 +95,7 @@ def test_distance_to_a_polyline(generator):
     points = generator.normal(size=(50, 3))
     corners = generator.normal(size=(6, 3))[[0, 1, 2, 2, 3, 4, 5]]
     shares = np.linspace(0.0, 1.0, 20001)[:, None]
-    line = np.concatenate([(1 - shares) * a + shares * b for a, b in pairwise(corners)])
+    steps = [start + shares * (end - start) for start, end in pairwise(corners)]
+    line = np.concatenate(steps)
     wanted = scipy.spatial.cKDTree(line).query(points)[0]
     assert polyline_distance(points, corners) == pytest.approx(wanted, abs=1e-6)
