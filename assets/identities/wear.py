@@ -20,6 +20,8 @@ from ...geometry.arrays import Floats64, Integers32
 from ..loading import load
 from ..model import GLASSES_NAME, Part
 from ..topology import quarter
+from .hair import HAIR_CUTS, HAIR_NAME, Fall
+from .hair_over_collar import over_collar
 from .mask import MASK_COLOURS, mask
 from .person import Person
 from .shirts import in_shirt
@@ -72,6 +74,11 @@ def wearing(
         in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
         for part in person.parts
     ]
+    if isinstance(HAIR_CUTS[person.identity.cut], Fall):
+        worn = next(part for part in parts if part.bone == "neck")
+        hair = [part for part in parts if part.name.startswith(HAIR_NAME)]
+        others = [part for part in parts if not part.name.startswith(HAIR_NAME)]
+        parts = [*others, *(over_collar(hair, worn) if hair else ())]
     nose = None
     if cover is not None:
         sheet = mask(person, MASK_COLOURS[cover])

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 from risorius.assets.identities import (
     COLLAR_BUILDERS,
     GLASSES_FRAMES,
+    HAIR_NAME,
     SHIRT_COLOURS,
     make_person,
     person_called,
@@ -123,3 +124,29 @@ def test_a_v_shows_the_shirt_below(people):
     assert light.colours[:count].mean() < 0.4 < light.colours[count:].mean()
     edge = light.vertices[count : count + 156]
     assert abs(edge[np.argmin(edge[:, 1]), 0]) < 0.01
+
+
+def around_the_neck(points):
+    """Angles around the neck's axis [degrees], and distances from it [mm], both (n,)."""
+    x, _, z = (points - [0.0, 0.0, -8.0]).T
+    return np.degrees(np.arctan2(x, z)), np.hypot(x, z)
+
+
+@pytest.mark.parametrize("turn", [-20.0, 0.0, 20.0])
+def test_loose_hair_lies_over_a_rolled_collar(turn):
+    """Person 777000052's hair lies outside of a rolled collar, also if the head turns [degrees].
+
+    The collar came through the hair in ragged pieces.
+    """
+    worn = wearing(person_called(777000052), shirt="red", collar="roll")
+    shirt = shirt_of(worn).vertices
+    hair = next(part for part in worn.parts if part.name == HAIR_NAME).vertices
+    (hair_angle, hair_far), (cloth_angle, cloth_far) = map(around_the_neck, (hair, shirt))
+    checked = 0
+    for angle, height, far in zip(hair_angle + turn, hair[:, 1], hair_far, strict=True):
+        beside = (cloth_angle - angle + 180.0) % 360.0 - 180.0
+        is_near = (np.abs(beside) < 5.0) & (np.abs(shirt[:, 1] - height) < 4.0)
+        if is_near.any():
+            checked += 1
+            assert far > cloth_far[is_near].max() - 2.5  # [mm]; it was 10 within
+    assert checked > 100
