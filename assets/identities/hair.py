@@ -28,6 +28,8 @@ from .locks import MEAN_PLACE, SHORT_HAIR, TIED_HAIR, locks_on, waves
 HAIR_NAME = "hair"  # the name of the part
 SLEEK_GLOSS = 0.4  # specular strength of hair that is combed smooth
 FRAYED_RISES = 0.5, 2.5  # [mm] of tips over roots, where outlines begin to fray, and fray fully
+# [mm] behind the hairline, likewise. Before, the inner side of hair closes the wedge below its hem.
+FRAYED_DEPTHS = 35.0, 60.0
 LENGTHWISE_FACTOR = 0.22  # factor on lengths along long strands, whose pattern changes more slowly
 
 
@@ -147,7 +149,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: Floats64, length: float) -> tuple[Pa
     dense = np.minimum((behind - first_depth + uneven) / hem_depth, 2.0)
     along = (LENGTHWISE_FACTOR if cut.knot else 1.0) * radius * away
     rise = (way * normals).sum(axis=1)
-    fray = smoothstep(rise, *FRAYED_RISES) * smoothstep(behind, 0.5 * cut.behind, cut.behind)
+    fray = smoothstep(rise, *FRAYED_RISES) * smoothstep(behind, *FRAYED_DEPTHS)
     if cut.knot:
         fray[:] = 0.0
     striation = np.column_stack([radius * angle, along, way, dense, fray])

@@ -137,3 +137,21 @@ def test_halves_of_parted_hair_meet_softly():
     beside = light[228:236].mean()
     other = light[244:252].mean()
     assert beside / other < 1.2
+
+
+@pytest.mark.parametrize("view", ["-30,10", "30,10"])
+def test_no_light_passes_between_temples_and_hair(view):
+    """No light lies between skin and hair of receded temples that are seen edge-on.
+
+    Person 105 had a gap of 1 to 2 mm there, with 8 and 33 pixels of light.
+    """
+    with Capture(FaceScene(person_called(105)), CaptureOptions(size=(512, 512))) as capture:
+        capture.camera = camera_for(capture.scene, view)
+        light = capture.draw_image()[55:130].astype(float).mean(axis=2)
+    if view.startswith("-"):
+        light = light[:, ::-1]
+    is_light = light > 165.0  # levels: the background has 200, skin and hair less than 140
+    outline = np.argmin(is_light, axis=1)[:, None]
+    columns = np.arange(light.shape[1])
+    behind = (columns > outline) & (columns < outline + 12)
+    assert (is_light & behind).sum() < 4
