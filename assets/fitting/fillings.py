@@ -117,9 +117,14 @@ class _Opening(NamedTuple):
         return [(centre + scale * (self.edge - centre))[:, :2] for scale in (1.0, 0.9, 0.8)]
 
     def is_covered_by(self, corners: Floats64) -> bool:
-        """Whether triangles (k, 3, 3) have corners near all landmarks."""
+        """Whether triangles (k, 3, 3) have corners near all landmarks.
+
+        Paths along the long edges of a coarse mesh meet before the corner of an eye.
+        """
         off = scipy.spatial.cKDTree(corners.reshape(-1, 3)).query(self.around)[0]
-        return bool(off.max() < 0.2 * self.width)
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+        edge_share = min(0.5 * float(np.median(sides)), 0.1 * self.width)
+        return bool(off.max() < 0.2 * self.width + edge_share)
 
 
 def _filling(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers:
@@ -164,8 +169,10 @@ def _sheet(vertices: Floats64, faces: Integers32, opening: _Opening) -> Integers
     is_near = np.linalg.norm(centroids - centre, axis=1) < 0.6 * opening.width
     near = np.flatnonzero((forward > 0.0) & is_in_front & is_near)
     between = _between_paths(vertices, faces, near, opening, is_cover)
-    if _is_disc(faces[between]) and opening.is_covered_by(corners[between]):
-        return between
+    # The paths of a dense mesh may touch beside a corner of the eye.
+    for found in (between, _without_teeth(faces, between)):
+        if _is_disc(faces[found]) and opening.is_covered_by(corners[found]):
+            return found
     for outline in opening.outlines(centre):
         inside = near[_is_inside(centroids[near, :2], outline)]
         found = _without_teeth(faces, inside)

@@ -1,6 +1,7 @@
 """Smooth paths beside a line: where sealed lips are cut, and where covered eyes are opened."""
 
 import numpy as np
+import pytest
 import scipy
 from numpy.linalg import norm
 
@@ -47,7 +48,7 @@ def scanned(spacing):
     faces = mask.mesh.faces
     normals = vertex_normals(mask.mesh.vertices, faces)
     front = mask.mesh.vertices[normals[:, 2] > 0.2]
-    grid, triangles = make_grid(60, 70, spacing)
+    grid, triangles = make_grid(round(150.0 / spacing), round(175.0 / spacing), spacing)
     turn = scipy.spatial.transform.Rotation.from_euler("z", 25.0, degrees=True)
     marks = mask.mesh.vertices[mask.landmarks]
     flat = turn.apply(grid - grid.mean(axis=0)) + marks.mean(axis=0)
@@ -57,22 +58,48 @@ def scanned(spacing):
     return Mesh(flat, triangles[is_skin[triangles].all(axis=1)]), marks
 
 
-def test_covered_eyes_of_a_scan_get_smooth_openings():
-    """The triangles left out before an eye have an edge without steps, though no row follows it."""
-    mesh, marks = scanned(2.5)
-    nearest = scipy.spatial.cKDTree(mesh.vertices).query(marks)[1].astype(np.int32)
+def nearest_vertices(mesh, marks):
+    """The vertices nearest to landmarks, (68,)."""
+    return scipy.spatial.cKDTree(mesh.vertices).query(marks)[1].astype(np.int32)
+
+
+def mean_turn(mesh, triangles):
+    """Mean angle [degrees] between sides of the edge of a sheet of triangles, which is one loop."""
+    border = border_edges(mesh.faces[triangles])
+    around = [int(border[0, 0]), int(border[0, 1])]
+    while around[-1] != around[0]:
+        links = border[(border == around[-1]).any(axis=1)]
+        ends = links[links != around[-1]]
+        around.append(int(ends[ends != around[-2]][0]))
+    assert len(around) == len(border) + 1
+    return np.degrees(turns(mesh.vertices[around])).mean()
+
+
+@pytest.mark.parametrize("has_hole", [False, True])
+def test_covered_eyes_of_a_scan_get_smooth_openings(has_hole):
+    """The triangles left out before an eye have an edge without steps, though no row follows it.
+
+    A hole beside a corner once gave a saw: it touches the edge, so the sheet was no disc.
+    """
+    mesh, marks = scanned(2.0 if has_hole else 2.5)
+    nearest = nearest_vertices(mesh, marks)
     found = filling_of(mesh, nearest, marks)
-    assert "left eye" in found.openings
-    for eye in (slice(36, 42), slice(42, 48)):
-        centre = marks[eye].mean(axis=0)
+    if has_hole:
         middles = mesh.vertices[mesh.faces[found.triangles]].mean(axis=1)
-        sheet = mesh.faces[found.triangles[norm(middles - centre, axis=1) < 25.0]]
-        border = border_edges(sheet)
-        around = [int(border[0, 0]), int(border[0, 1])]
-        while around[-1] != around[0]:
-            links = border[(border == around[-1]).any(axis=1)]
-            ends = links[links != around[-1]]
-            around.append(int(ends[ends != around[-2]][0]))
-        assert len(around) == len(border) + 1
+        by_distance = np.argsort(norm(middles - marks[42], axis=1))
+        hole = found.triangles[by_distance[4]]  # one of its corners lies on the edge
+        mesh = Mesh(mesh.vertices, np.delete(mesh.faces, hole, axis=0))
+        found = filling_of(mesh, nearest, marks)
+    assert "left eye" in found.openings
+    middles = mesh.vertices[mesh.faces[found.triangles]].mean(axis=1)
+    for eye in (slice(36, 42), slice(42, 48)):
+        is_before = norm(middles - marks[eye].mean(axis=0), axis=1) < 25.0
         # Steps from row to row would turn by 56 degrees in the mean.
-        assert np.degrees(turns(mesh.vertices[around])).mean() < 45.0
+        assert mean_turn(mesh, found.triangles[is_before]) < 45.0
+
+
+def test_a_coarse_scan_of_covered_eyes_is_opened():
+    """Paths along edges of 4.2 mm meet 6 mm before a corner; such scans were refused."""
+    mesh, marks = scanned(4.2)
+    found = filling_of(mesh, nearest_vertices(mesh, marks), marks)
+    assert found.openings == ("right eye", "left eye")
