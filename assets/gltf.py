@@ -296,8 +296,8 @@ def _moved(points: Floats64, matrices: Floats64) -> Floats64:
     """Move points (V, 3) by one matrix, (4, 4), or each by its own matrix, (V, 4, 4)."""
     rows = matrices[..., :3, :]
     # Written out, so that equal points stay equal to the last bit at any place in the list.
-    along = [rows[..., axis] * points[:, axis, None] for axis in range(3)]
-    moved: Floats64 = along[0] + along[1] + along[2] + rows[..., 3]
+    x, y, z = points.T[:, :, None]
+    moved: Floats64 = rows[..., 0] * x + rows[..., 1] * y + rows[..., 2] * z + rows[..., 3]
     return moved
 
 
@@ -340,11 +340,11 @@ def _same_vertices(pieces: list[_Piece], starts: Integers64) -> Iterator[Integer
     """Return, for each vertex, node by node, the first of the vertices merged with it."""
     for node in dict.fromkeys(piece.node for piece in pieces):
         own = [piece for piece in pieces if piece.node == node]
-        start = starts[next(n for n, piece in enumerate(pieces) if piece.node == node)]
+        first = next(number for number, piece in enumerate(pieces) if piece.node == node)
         motion = np.vstack([piece.motion for piece in own])
         farthest = abs(motion[:, :3]).max(initial=0.0)
         motion[:, :3] /= max(farthest, 1e-300)
-        yield start + _first_of_same(np.vstack([piece.stored for piece in own]), motion)
+        yield starts[first] + _first_of_same(np.vstack([piece.stored for piece in own]), motion)
 
 
 def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:

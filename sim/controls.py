@@ -258,7 +258,8 @@ def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[fl
     """Return the limits of each control; a control for both sides has the limits of one side."""
     limits = {control.name: (control.low, control.high) for control in controls}
     for name in layers.shares:
-        sides = [limits[name + side] for side in SIDE_ENDINGS if name + side in limits]
+        names = [name + side for side in SIDE_ENDINGS]
+        sides = [limits[each] for each in names if each in limits]
         of_both = sides and name in layers.groups.get(BOTH_SIDES, ())
         limits[name] = sides[0] if of_both else (0.0, 1.0)
     return limits

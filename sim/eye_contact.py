@@ -184,9 +184,10 @@ def _long_faces(
 def barycentric_grid() -> Floats64:
     """Return the barycentric coordinates of points all over a triangle, shape (S, 3)."""
     edge_steps = 6  # parts of each edge; a triangle is compared with the eyeball at their ends
-    n = edge_steps
-    steps = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
-    return np.array(steps, np.float64) / n
+    first, second = np.indices((edge_steps + 1, edge_steps + 1)).reshape(2, -1)
+    steps = np.column_stack([first, second, edge_steps - first - second])
+    is_within = steps[:, 2] >= 0
+    return steps[is_within] / edge_steps
 
 
 @njit

@@ -216,7 +216,8 @@ def hang_on_fibre(
         past = dot(less(place, 1.0, row_of(points, end)), ahead)
         reach = squared / hold.width**2
         if along >= 1.0 - 1e-12 and past > 0.0:
-            reach = max(squared - past**2, 0.0) / hold.width**2 + (past / hold.beyond) ** 2
+            beside = max(squared - past**2, 0.0)
+            reach = beside / hold.width**2 + (past / hold.beyond) ** 2
         if reach >= cut_widths**2:
             continue
         held = hold.weight * np.exp(-reach) * gate_at(hold.gate, place[0], attached.lip_side[n])
@@ -350,8 +351,17 @@ def contract(moved: Floats64, lost: float, fixed_at: float, displacement: Floats
             near += 1
         while far < count - 1 and arc[far] < here:
             far += 1
-        u = (there - arc[near - 1]) / max(arc[near] - arc[near - 1], 1e-12)
-        t = (here - arc[far - 1]) / max(arc[far] - arc[far - 1], 1e-12)
-        to = toward(row_of(moved, near - 1), row_of(moved, near), u)
-        at = toward(row_of(moved, far - 1), row_of(moved, far), t)
+        to = point_in_segment(moved, arc, near, there)
+        at = point_in_segment(moved, arc, far, here)
         write_row(displacement, s, less(to, 1.0, at))
+
+
+@njit
+def point_in_segment(points: Floats64, arc: Floats64, end: int, place: float) -> Vector:
+    """The point of a line (k, 3) at an arc length within the segment that ends at point `end`.
+
+    arc: arc length up to each point, (k,).
+    """
+    start = end - 1
+    share = (place - arc[start]) / max(arc[end] - arc[start], 1e-12)
+    return toward(row_of(points, start), row_of(points, end), share)

@@ -48,13 +48,16 @@ EYE_LANDMARKS = {Side.RIGHT: (36, 37, 38, 39, 40, 41), Side.LEFT: (45, 44, 43, 4
 
 
 def _mirror_table() -> Integers64:
-    pairs = [(i, 16 - i) for i in range(8)] + [(i, 43 - i) for i in range(17, 22)]
-    pairs += [(31, 35), (32, 34), (36, 45), (37, 44), (38, 43), (39, 42), (40, 47), (41, 46)]
-    pairs += [(48, 54), (49, 53), (50, 52), (55, 59), (56, 58), (60, 64), (61, 63), (65, 67)]
+    jaw = [(right, 16 - right) for right in range(8)]
+    brows = [(right, 43 - right) for right in range(17, 22)]
+    nostrils = [(31, 35), (32, 34)]
+    eyes = [(36, 45), (37, 44), (38, 43), (39, 42), (40, 47), (41, 46)]
+    outer_lips = [(48, 54), (49, 53), (50, 52), (55, 59), (56, 58)]
+    inner_lips = [(60, 64), (61, 63), (65, 67)]
     table = np.arange(LANDMARK_COUNT)
-    for right, left in pairs:
-        table[right] = left
-        table[left] = right
+    right, left = np.array([*jaw, *brows, *nostrils, *eyes, *outer_lips, *inner_lips]).T
+    table[right] = left
+    table[left] = right
     return table
 
 

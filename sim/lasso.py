@@ -56,4 +56,5 @@ class Lasso(NamedTuple):
         """Return the least value of the sum with only these controls, up to a constant."""
         x = self.minimise(usable)
         spent = self.price @ np.abs(self.changed + x)
-        return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)
+        squares = x @ self.gram @ x
+        return float(squares - 2.0 * self.right @ x + 2.0 * spent)

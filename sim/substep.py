@@ -220,14 +220,13 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         w = lips.weight[p]
         inverse = inverse_mass(lips, p, mass) / lips.averaging[p]
         for k in range(3):
-            apart = x[i, k] - rest[i, k]
-            apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
+            apart = motion_apart(x, rest, (i, a, b), w, k)
             firmness = grip.stiffness
             if k == 1:
                 apart -= lips.below[p] * grip.overlap
                 if lips.below[p] * apart < 0.0:
                     firmness = grip.gap_stiffness
-            speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
+            speed = speed_apart(v, (i, a, b), w, k)
             give = h * inverse * firmness * lips.seal[p] * SEAL_AXES[k]
             slowed = (speed - give * apart) / (1.0 + h * give)
             impulse = (slowed - speed) / inverse
@@ -238,6 +237,30 @@ def hold_lips(state: State, skin: SkinModel, tick: Tick) -> None:
         i = lips.members[row]
         for k in range(3):
             v[i, k] += change[i, k]
+
+
+@njit
+def motion_apart(
+    x: Floats64, rest: Floats64, pair: tuple[int, int, int], w: float, axis: int
+) -> float:
+    """How far a vertex of one lip moved from rest, relative to its point of the other lip [mm].
+
+    pair: the vertex, and both ends of the point's segment. w: weight of the first end.
+    """
+    i, a, b = pair
+    moved_a = x[a, axis] - rest[a, axis]
+    moved_b = x[b, axis] - rest[b, axis]
+    moved = x[i, axis] - rest[i, axis]
+    apart: float = moved - (w * moved_a + (1.0 - w) * moved_b)
+    return apart
+
+
+@njit
+def speed_apart(v: Floats64, pair: tuple[int, int, int], w: float, axis: int) -> float:
+    """Speed of a vertex relative to its point of the other lip; pair, w: as in `motion_apart`."""
+    i, a, b = pair
+    speed: float = v[i, axis] - w * v[a, axis] - (1.0 - w) * v[b, axis]
+    return speed
 
 
 @njit
@@ -284,8 +307,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
         deep = lips.least_gap[p] - overlap - gap
         if deep <= 0.0:
             continue
-        forward = x[i, 2] - rest[i, 2]
-        forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
+        forward = motion_apart(x, rest, (i, a, b), w, 2)
         full = min(max(1.0 - (abs(forward) - SLIDE_DISTANCE) / slide_fade, 0.0), 1.0)
         if full == 0.0:
             continue
@@ -294,7 +316,7 @@ def keep_lips_apart(state: State, skin: SkinModel, overlap: float) -> None:
             crossed = True
         inverse = inverse_mass(lips, p, mass)
         push = below * full * lips.averaging[p] * deep / inverse
-        approach = below * (v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1])
+        approach = below * speed_apart(v, (i, a, b), w, 1)
         stop = below * full * lips.averaging[p] * max(approach, 0.0) / inverse
         change[i, 0] -= push / mass[i]
         change[a, 0] += w * push / mass[a]

@@ -160,7 +160,8 @@ def place_tongue(parts: Any, space: FaceSpace, landmarks: Integers64 | None) -> 
         if part.name in names:
             what = f"head.parts: {part.name}"
             found[part.name] = checked.numbers(what, part.vertices, (None, 3), "(n, 3)")
-    if landmarks is None or any(not len(found.get(name, ())) for name in names):
+    has_all = all(name in found and len(found[name]) for name in names)
+    if landmarks is None or not has_all:
         return None
     rest, lower, upper = (space.to_standard(found[name]) for name in names)
     tip = rest[:, 2].max()

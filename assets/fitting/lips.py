@@ -106,7 +106,8 @@ class LipCut:
         known = set(map(tuple, self.below.tolist()))
         touched = np.flatnonzero(np.isin(triangles, self.sources).any(axis=1))
         found = np.zeros(len(triangles), np.bool_)
-        found[touched] = [tuple(sorted(row)) in known for row in triangles[touched].tolist()]
+        rows = np.sort(triangles[touched], axis=1).tolist()
+        found[touched] = [tuple(row) in known for row in rows]
         return found
 
 

@@ -303,10 +303,13 @@ def rim_behind(skin: SkinPiece, is_edge: Flags, is_behind: Flags) -> Flags:
         beside = np.zeros(len(rows), np.bool_)
         beside[faces[touches_row]] = True
         row = beside & is_behind & ~rows
-        if not row.any() or abs(depth[row].mean() - rim_depth) > abs(reached - rim_depth):
+        if not row.any():
+            break
+        row_depth = float(depth[row].mean())
+        if abs(row_depth - rim_depth) > abs(reached - rim_depth):
             break
         rows |= row
-        reached = float(depth[row].mean())
+        reached = row_depth
     rims = rows, is_behind & (depth <= rim_depth)
     return min(rims, key=lambda rim: _border_length(skin, is_behind & ~rim))
 

@@ -118,7 +118,8 @@ def _behind_lids(
     centre, radius: an estimate. opening: centre of the opening, (3,). skin: points of the lids,
     (n, 3).
     """
-    around = np.arctan2(skin[:, 1] - opening[1], skin[:, 0] - opening[0])
+    x, y, _ = (skin - opening).T
+    around = np.arctan2(y, x)
     turns = (around / np.pi + 1.0) / 2.0  # 0 to 1
     sector_count = 12  # around an eye; in each sector the nearest skin should touch the eyeball
     sector = np.floor(turns * sector_count).astype(int) % sector_count
@@ -304,8 +305,9 @@ def with_eyelid_rims(
     placed = []
     for part in parts:
         if part.name == flesh:
+            rims = [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop]
             part = _without_corners(part, [eye for eye, loop in loops if not loop])
-            part = _with_rims(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
+            part = _with_rims(part, rims)
             if not len(part.faces):
                 continue
         placed.append(part)
@@ -347,8 +349,7 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     """
     away = edge - eye.centre
     length = np.linalg.norm(away, axis=1)
-    beside = away * [1.0, 1.0, 0.0]
-    beside = unit_vectors(beside)
+    beside = unit_vectors(away * [1.0, 1.0, 0.0])
     start = np.arccos(away[:, 2] / length)
     rim_depth = 3.0  # [mm] from the equator of the ball back to the end of a rim
     end = np.maximum(0.5 * np.pi + np.arcsin(rim_depth / eye.radius), start)
@@ -358,7 +359,9 @@ def _rim_of(eye: Eye, edge: Floats64) -> tuple[Floats64, Integers32]:
     sunk_depth = 0.3  # [mm] from the ball's surface inward to the end of a rim
     reach = (1.0 - fraction) * (length + tucked_depth) + fraction * (eye.radius - sunk_depth)
     forward = np.array([0.0, 0.0, 1.0])
-    directions = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * forward
+    aside = np.sin(angle)[..., None] * beside
+    ahead = np.cos(angle)[..., None] * forward
+    directions = aside + ahead
     points = eye.centre + (reach[..., None] * directions).reshape(-1, 3)
     rows = np.arange(len(points)).reshape(RIM_ROWS, -1)
     return points, grid_faces(rows, closed=True)

@@ -373,8 +373,9 @@ def own_picture(
     if used[0] < 0:
         mean = np.mean([each.mean(axis=(0, 1)) for each in pictures], axis=0)
         pictures.insert(0, np.full((1, 1, 3), mean.round(), np.uint8))
-    width = min(max(each.shape[1] for each in pictures), LARGEST_SIDE // len(pictures))
-    height = max(each.shape[0] for each in pictures)
+    height = max(picture.shape[0] for picture in pictures)
+    widest = max(picture.shape[1] for picture in pictures)
+    width = min(widest, LARGEST_SIDE // len(pictures))
     if len(pictures) > 1:
         tiles = [
             np.asarray(PIL.Image.fromarray(picture).resize((width, height))) for picture in pictures

@@ -231,7 +231,8 @@ def _remove_built_in_lines(near: Floats32, place: Floats64, fan: _Fan) -> None:
     x, y, _ = np.moveaxis(place, 2, 0)
     lowest = 9.5 + 11.0 * smoothstep(np.abs(x), 14.0, 20.0)
     is_above = (y > lowest) & (y < FAR_AWAY)
-    is_in_fan = (fan.radius > 8.0) & (fan.radius < 42.0) & (fan.angle > -1.4) & (fan.level > 0.0)
+    is_beside_eye = (fan.radius > 8.0) & (fan.radius < 42.0)
+    is_in_fan = is_beside_eye & (fan.angle > -1.4) & (fan.level > 0.0)
     in_first_slot = 1.0 - near[..., 3] / 255.0
     taken = is_above.astype(np.float64) + in_first_slot * is_in_fan
     kept = np.maximum(1.0 - taken, 0.0)[..., None]

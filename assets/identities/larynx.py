@@ -28,11 +28,16 @@ def larynx_of(person: Person, size: int) -> Relief:
     half_width = 6.5  # [mm]
     half_height = 9.0  # [mm]
     up = y - throat + below  # [mm] from the middle of the larynx
-    notch = 0.25 * np.exp(-((x / 3.5) ** 2) - ((up - 6.0) / 4.0) ** 2)
-    ridge = np.exp(-((x / half_width) ** 2) - (up / half_height) ** 2)
+    notch = 0.25 * _hill(x / 3.5, (up - 6.0) / 4.0)
+    ridge = _hill(x / half_width, up / half_height)
     inside = smoothstep(ridge, 0.0, 0.35)  # a steeper end would be a rim in oblique light
     heights: Floats64 = person.identity.larynx * inside * (ridge - notch)
     return relief_of(texels, heights, np.ones_like(heights))
+
+
+def _hill(across: Floats64, up: Floats64) -> Floats64:
+    """Heights of a hill of height 1 (a Gaussian), at places in units of its half widths."""
+    return np.exp(-(across**2) - up**2)
 
 
 @lru_cache(maxsize=2)

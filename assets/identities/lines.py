@@ -85,8 +85,11 @@ def drawn_lines(is_man: bool, age: float, random: np.random.Generator) -> Expres
     fans = np.cumsum([whole, lower, upper])
     spreads = np.cumsum([0.51, 0.25])
     # Young skin has shallower wrinkles; how much shallower is assumed.
-    depths = (0.72 + 0.5 * late) * (0.92 + 0.16 * man) * np.exp2(0.35 * np.array(deep))
-    of_forehead, of_frown, of_feet, of_fold = (depths * [1.0, 1.0, 1.12 - 0.12 * man, 1.0]).tolist()
+    of_age = 0.72 + 0.5 * late
+    of_sex = 0.92 + 0.16 * man
+    depths = of_age * of_sex * np.exp2(0.35 * np.array(deep))
+    of_forehead, of_frown, of_feet, of_fold = depths.tolist()
+    of_feet *= 1.12 - 0.12 * man
     furrow_count = np.rint(3.1 + 1.3 * late + 1.1 * count)
     feet_count = np.rint(3.6 + 1.8 * late + 0.9 * feet)
     kinds_of_fan = (Fan.WHOLE, Fan.LOWER, Fan.UPPER, Fan.CENTRAL)

@@ -106,7 +106,8 @@ def _sheet_places(person: Person) -> tuple[Floats64, Floats64]:
     chin = float(landmarks[8, 1])
     corner = float(landmarks[48, 1])
     top = bridge + (ear - 15.0 - bridge) * smoothstep(np.abs(across), 0.1, 0.95)
-    bottom = chin - 6.0 + (corner - 12.0 - chin + 6.0) * np.abs(across) ** 2.6
+    rise = corner - 12.0 - chin + 6.0  # of the lower edge, from the chin to its ends
+    bottom = chin - 6.0 + rise * np.abs(across) ** 2.6
     down = np.linspace(0.0, 1.0, MASK_SHAPE[0])[:, None]
     height = top + down * (bottom - top)
     return np.broadcast_to(widest * across, MASK_SHAPE), height
@@ -190,7 +191,7 @@ def _loop(person: Person, start: Floats64, ear: Floats64, rise: float) -> Floats
     ear: the tragion. rise: height above it where the elastic passes the ear [mm].
     """
     side = np.sign(start[0])
-    end = np.array([ear[0] + side * 2.5, ear[1] + rise, ear[2] - 4.0])
+    end = ear + np.array([side * 2.5, rise, -4.0])
     straight = beside_head(person.vertices, start, end, 0.9)
     turn = np.linspace(0.0, 1.0, 7)[1:, None]
     backward = turn * [-side * 3.0, 0.0, -14.0]

@@ -194,7 +194,8 @@ def _resting_face(
                 ring = known.rings[f"eye_{row}_{eye.name}"]
                 inner, outer = vertices[ring[[0, len(ring) // 2]]]
                 along = (vertices[ring, 0] - inner[0]) / (outer[0] - inner[0])
-                is_above = vertices[ring, 1] > inner[1] + along * (outer[1] - inner[1])
+                between_corners = inner[1] + along * (outer[1] - inner[1])
+                is_above = vertices[ring, 1] > between_corners
                 open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
                 x[ring, 1] += weight * moved * open_ * (is_above == (lid == "superius"))
     # Brows move tangentially to the forehead; touching lips move together.

@@ -109,9 +109,12 @@ class Identity:
 
     def scaled(self, factor: float) -> Identity:
         """Scale the shape's differences from the mean of people by `factor`; 0 gives the mean."""
-        kinds = (self.weights, self.unevenness)
-        weights, unevenness = (tuple(factor * weight for weight in kind) for kind in kinds)
-        return replace(self, weights=weights, unevenness=unevenness, brows=factor * self.brows)
+        return replace(
+            self,
+            weights=tuple(factor * weight for weight in self.weights),
+            unevenness=tuple(factor * weight for weight in self.unevenness),
+            brows=factor * self.brows,
+        )
 
 
 def norms_of(sex: Sex) -> dict[str, NormSample]:

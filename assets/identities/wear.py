@@ -206,7 +206,7 @@ def _depth_at(skin: Floats64, tree: scipy.spatial.cKDTree, points: Floats64) -> 
 def _temple_path(skin: Floats64, hinge: Floats64, ear: Floats64, thickness: float) -> Floats64:
     """Lay a temple from the hinge over the ear and down behind it: a path [mm], (n, 3)."""
     side = np.sign(hinge[0])
-    top = np.array([ear[0] + side * 2.5, ear[1] + 21.0, ear[2] - 4.0])
+    top = ear + np.array([side * 2.5, 21.0, -4.0])
     straight = beside_head(skin, hinge, top, 0.5 * thickness)
     turn = np.linspace(0.0, 1.0, 9)[1:, None]
     backward = turn * [0.0, 0.0, -16.0]

@@ -19,6 +19,7 @@ from PIL import ImageDraw
 from risorius.app.capture.captions import font
 from risorius.app.pictures import Image
 from risorius.geometry.arrays import Floats64
+from risorius.geometry.sides import edges_of
 from risorius.refine.kahler.table import POINT_COORDINATES, points_on, splits_of, subdivide
 
 PAPER_COLOUR = (255, 255, 255)
@@ -113,10 +114,7 @@ def triangulation(diagram: Diagram, corners: Floats64, splits: tuple[int, int, i
     """Draw one subdivided triangle, with its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL_COLOUR)
-    sides = set()
-    for a, b, c in subdivide(splits):
-        sides |= {tuple(sorted(side)) for side in ((a, b), (b, c), (c, a))}
-    for a, b in sorted(sides):
+    for a, b in edges_of(np.array(subdivide(splits))):
         diagram.line([points[a], points[b]])
     for number in new_points(splits):
         is_middle = number % 3 == 0
