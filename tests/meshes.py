@@ -78,6 +78,14 @@ def octahedron() -> Mesh:
     return _mesh(vertices, faces)
 
 
+def cube() -> Mesh:
+    """A cube of twelve triangles, whose corners have coordinates 0 and 1."""
+    corners = np.indices((2, 2, 2)).reshape(3, -1).T  # corner 4 x + 2 y + z
+    squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    halves = [half for a, b, c, d in squares for half in ((a, b, c), (a, c, d))]
+    return _mesh(corners, halves)
+
+
 def ball(levels: int = 2) -> Mesh:
     """A sphere of radius 1: an octahedron, split `levels` times and rounded."""
     vertices = octahedron().vertices

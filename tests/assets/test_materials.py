@@ -14,20 +14,13 @@ from risorius.assets import AssetError
 from risorius.assets.painted import read_painted
 from risorius.assets.pictures import decoded
 from risorius.assets.wavefront import maps_of
+from tests.assets.gltf_square import RED, png
 
 OBJ = (
     "mtllib {library}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt .25 .5\nvt .75 .5\nvt .75 1\n"
     "usemtl {material}\nf 1/1 2/2 3/3\n"
 )
 UV = np.array([[0.25, 0.5], [0.75, 0.5], [0.75, 1.0]])
-RED = (250, 10, 20)
-
-
-def png(colour=RED):
-    """A picture of one colour."""
-    content = io.BytesIO()
-    PIL.Image.new("RGB", (4, 4), colour).save(content, "PNG")
-    return content.getvalue()
 
 
 def read(folder, material, library, /, **names):

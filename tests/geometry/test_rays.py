@@ -7,6 +7,7 @@ from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.rays import crossings, cutting, exits
 from risorius.geometry.read_only import read_only
+from tests.meshes import cube
 
 
 def test_weights_and_distance_name_one_point():
@@ -52,7 +53,8 @@ def test_triangles_cut_each_other_where_an_edge_of_one_crosses_the_other():
 def test_rays_leave_a_cube_where_its_walls_are():
     """A ray from a point inside a cube has one exit; distance and cosine are those of its wall."""
     random = np.random.default_rng(1)
-    vertices, faces = cube()
+    vertices = 2.0 * cube().vertices - 1.0
+    faces = cube().faces
     origin = np.array([0.3, -0.2, 0.5])
     directions = random.normal(size=(300, 3))
     directions = unit_vectors(directions)
@@ -67,18 +69,11 @@ def test_rays_leave_a_cube_where_its_walls_are():
 
 def test_only_exits_of_a_ray_are_counted():
     """A ray that enters an inner box from outside has one exit: the far side of the outer box."""
-    vertices, faces = cube()
+    vertices = 2.0 * cube().vertices - 1.0
+    faces = cube().faces
     small = 0.2 * vertices + [0.6, 0.1, 0.2]
     both = np.vstack([vertices, small])
     numbers = np.vstack([faces, faces + len(vertices)])
     ray, distance, _ = exits(np.zeros(3), np.array([[1.0, 0.13, 0.29]]), both, numbers)
     assert np.array_equal(ray, [0, 0])
     assert_allclose(np.sort(distance), [0.8, 1.0])
-
-
-def cube():
-    """Vertices (8, 3) at -1 and 1, and faces (12, 3) counter-clockwise from outside."""
-    vertices = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-    squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [[a, *pair] for a, b, c, d in squares for pair in ((b, c), (c, d))]
-    return vertices, np.array(faces, np.int32)

@@ -10,6 +10,7 @@ from pytest import approx
 from risorius import refine
 from risorius.refine.mesh.creases import dihedral_angles, sectors_of
 from tests import meshes
+from tests.meshes import cube
 from tests.refine.cases import Forced, soups
 
 LOOK_OPTIONS = {"scheme": "cubic", "criterion": "displacement+rest"}
@@ -39,13 +40,6 @@ def prism(sides):
     return np.concatenate(points), np.array(faces)
 
 
-def cube():
-    """A cube of twelve triangles."""
-    points = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    return points, np.array([half for a, b, c, d in quads for half in ([a, b, c], [a, c, d])])
-
-
 def volume(points, faces):
     """Volume of a closed mesh."""
     a, b, c = points[faces].astype(float).swapaxes(0, 1)
@@ -73,7 +67,8 @@ def test_a_cylinder_keeps_its_rims(options):
 
 def test_a_cube_stays_one():
     """A cube's flat sides need no splits; forced splits move nothing by more than rounding."""
-    points, faces = cube()
+    points = cube().vertices
+    faces = cube().faces
     refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK_OPTIONS).refine(
         points
     )
@@ -123,7 +118,8 @@ def test_uniform_subdivision_keeps_them(levels):
 
     In uniform subdivision a cube keeps its corners and flat sides.
     """
-    points, faces = cube()
+    points = cube().vertices
+    faces = cube().faces
     refiner = refine.create("loop", faces, points, levels=levels, crease_angle=60.0)
     refined = refiner.refine(points)
     assert refined.positions.min() == 0.0
@@ -180,7 +176,8 @@ def test_sectors_are_what_creases_leave_together(soup, angle):
 
 def test_angles_by_hand():
     """A cube's edges turn by 90 degrees; its diagonals, borders and slivers by none."""
-    points, faces = cube()
+    points = cube().vertices
+    faces = cube().faces
     mesh = refine.connect(faces, 8)
     angles = np.degrees(dihedral_angles(mesh, points))
     assert sorted(angles.round(9).tolist()) == [0.0] * 6 + [90.0] * 12
