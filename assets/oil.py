@@ -104,15 +104,16 @@ def _sites(marks: Floats64) -> tuple[Floats64, Floats64]:
         (middle - 2.0 * up, NECK),
         (marks[8] - 0.8 * up + 0.5 * (middle - nasion), NECK),
     ]
-    for eye, lid, wing, side, corner, jaw, brow in (
-        (36, 40, 31, 0, 48, 4, 17),
-        (45, 47, 35, 16, 54, 12, 26),
+    # Landmarks of the right and of the left half, and the neighbours of `brow` and `jaw` on it.
+    for eye, lid, wing, side, corner, jaw, upper_jaw, brow, inner_brow in (
+        (36, 40, 31, 0, 48, 4, 3, 17, 18),
+        (45, 47, 35, 16, 54, 12, 13, 26, 25),
     ):
         outward = marks[side] - middle
         found += [
-            (marks[brow + (1 if side == 0 else -1)] + 0.5 * up, FOREHEAD),
+            (marks[inner_brow] + 0.5 * up, FOREHEAD),
             (marks[[eye, lid, wing]].mean(axis=0), CHEEK),
-            (marks[[eye, corner, jaw - 1 if side == 0 else jaw + 1]].mean(axis=0), CHEEK),
+            (marks[[eye, corner, upper_jaw]].mean(axis=0), CHEEK),
             (marks[[jaw, corner]].mean(axis=0), CHEEK),
             (marks[jaw], SIDE),
             (marks[side] + 0.2 * (marks[30] - middle), SIDE),

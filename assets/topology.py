@@ -24,24 +24,29 @@ def boundary_loops(faces: Integers32) -> list[list[int]]:
     edges, edge = different_pairs(np.sort(sides, axis=1))
     is_border = np.bincount(edge) == 1
     border_sides = sides[is_border[edge]]
-    left = {(first, second) for first, second in border_sides.tolist()}
+    remaining = {(first, second) for first, second in border_sides.tolist()}
     at_border = np.isin(faces, edges[is_border]).any(axis=1)
     third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge there
     for a, b, c in faces[at_border].tolist():
         third[a, b] = c
         third[b, c] = a
         third[c, a] = b
+
+    def vertex_after(first: int, second: int) -> int:
+        """Go around `second`, face by face, from one side at the border to the next."""
+        following = third[first, second]
+        while (following, second) in third:
+            following = third[following, second]
+        return following
+
     loops = []
-    while left:
-        first, second = min(left)
+    while remaining:
+        side = min(remaining)
         loop = []
-        while (first, second) in left:
-            left.remove((first, second))
-            loop.append(first)
-            following = third[first, second]
-            while (following, second) in third:
-                following = third[following, second]
-            first, second = second, following
+        while side in remaining:
+            remaining.remove(side)
+            loop.append(side[0])
+            side = side[1], vertex_after(*side)
         loops.append(loop)
     return sorted(loops, key=len, reverse=True)
 

@@ -93,8 +93,7 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                 libraries.append(_first_word(line.decode())[1])
         except (ValueError, IndexError, OverflowError):
             raise _error_about_line(number, line) from None
-        largest = max(len(coordinates), len(normals), len(corners) // 3, len(places))
-        if largest > 3 * most:
+        if max(len(coordinates), len(normals), len(corners) // 3, len(places)) > 3 * most:
             raise AssetError(
                 f"line {number}: more than {most} vertices or triangles; reduce it in a modelling "
                 "program"

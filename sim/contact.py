@@ -209,7 +209,7 @@ def _evenly_held(
 
 
 def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipPairs:
-    """Arrays of found pairs."""
+    """Return found pairs as arrays, with the seal's stiffness for each; seal: of an area."""
     vertex = np.array([pair.vertex for pair in pairs], dtype=np.int32)
     beside = np.array([pair.beside for pair in pairs], dtype=np.int32).reshape(-1, 2)
     weight = np.array([pair.weight for pair in pairs], dtype=np.float64)
@@ -217,10 +217,10 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
     first = beside[weight > 0.0, 0]
     second = beside[weight < 1.0, 1]
     paired = np.concatenate([vertex, first, second])
-    count = np.bincount(paired, minlength=surface.vertex_count)
-    most = np.maximum(count[vertex], count[beside].max(axis=1, initial=1))
+    pairs_at = np.bincount(paired, minlength=surface.vertex_count)  # number of each vertex's pairs
+    most_pairs = np.maximum(pairs_at[vertex], pairs_at[beside].max(axis=1, initial=1))
     strength = _evenly_held(seal * surface.areas, vertex, beside, weight)
-    members = np.flatnonzero(count).astype(np.int32)
+    members = np.flatnonzero(pairs_at).astype(np.int32)
     lips = LipPairs(
         vertex=vertex,
         beside=beside,
@@ -228,7 +228,7 @@ def _lip_pairs(surface: SkinSurface, pairs: list[_LipPair], seal: float) -> LipP
         below=below,
         least_gap=np.zeros(len(pairs)),  # measured below, by the other fields
         seal=strength,
-        averaging=1.0 / most,
+        averaging=1.0 / most_pairs,
         members=members,
     )
     gap = -below * lips.separations(surface.positions)[:, 1]

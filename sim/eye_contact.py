@@ -281,12 +281,14 @@ def depth_in_ball(away: Vector, look: Vector, ball: Triple, kept: tuple[float, f
     radii of ball and iris, and distance that skin keeps from the centre before the pupil [mm].
     kept: the point's `least` and `sunk` of `NearVertices` [mm].
     """
+    radius, iris, top = ball
+    least, sunk = kept
     distance = length(away)
-    if distance >= ball[2] or distance == 0.0:
+    if distance >= top or distance == 0.0:
         return 0.0
     ahead = dot(away, look) / distance
-    surface = ball_surface(ahead, ball[0], ball[1]) + EYE_CLEARANCE
-    depth: float = max(kept[0], surface - kept[1]) - distance
+    surface = ball_surface(ahead, radius, iris) + EYE_CLEARANCE
+    depth: float = max(least, surface - sunk) - distance
     return depth
 
 

@@ -127,17 +127,17 @@ def bind(scene: Drawable, renderer: render.Renderer, refinement: Refinement) -> 
     A large mesh with an unchanged look is refined on the graphics card, with the same result.
     """
     has_card = renderer.lends_gpu_streams and not renderer.surface.is_software
-    is_open = refinement.refiner is None and not refinement.options
-    suits_card = has_card and is_open and len(scene.faces) >= LARGE_MESH
-    asked = replace(refinement, refiner=CARD_REFINER) if suits_card else refinement
-    refiner = refiner_for(scene, asked, attributes=_attributes_of(scene))
-    plug_ins = plug_ins_of(*asked.for_scene(scene.name))
+    is_plain_look = refinement.refiner is None and not refinement.options
+    suits_card = has_card and is_plain_look and len(scene.faces) >= LARGE_MESH
+    chosen = replace(refinement, refiner=CARD_REFINER) if suits_card else refinement
+    refiner = refiner_for(scene, chosen, attributes=_attributes_of(scene))
+    plug_ins = plug_ins_of(*chosen.for_scene(scene.name))
     with reported(plug_ins):
         stream = _stream_for(scene, renderer, refiner)
 
     def resting() -> refine.Refiner:
         """Make a separate refiner, because some refiners depend on the frame before."""
-        twin = refiner_for(scene, asked)
+        twin = refiner_for(scene, chosen)
         twin.refine(scene.rest_positions)
         return twin
 

@@ -93,13 +93,13 @@ def within_skin(
     walls = np.concatenate([part.vertices for part in parts]).astype(np.float64)
     weights: ShareArray = np.concatenate([_mandible_shares(part) for part in parts])
     centre = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
-    skins = [_closed_skin(fitted, mouth)]
+    poses = [(np.eye(4), *_closed_skin(fitted, mouth))]  # mandible's motion, and the skin's mesh
     for mandible in jaws:
         moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
-        skins.append((moved, fitted.faces))
+        poses.append((mandible, moved, fitted.faces))
     wall_depth = 6.0  # [mm] behind the skin
     least_cosine = 0.35  # bound of the cosine between the skin's normal and a ray
-    for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
+    for mandible, vertices, faces in poses:
         away = stretched_walls(walls, weights, mandible) - centre
         length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
         directions = away / length[:, None]

@@ -52,12 +52,13 @@ def sound_sectors(mesh: Connectivity, rest: Floats64) -> Integers64:
     """
     joined, count = corner_sectors(mesh, ~mesh.around.is_interior)
     sectors = joined.astype(np.int64)
-    weights = np.zeros(mesh.faces.shape)
-    weigh_corners(rest, mesh.faces, weights)
+    weights_of_normals = np.zeros(mesh.faces.shape)
+    weigh_corners(rest, mesh.faces, weights_of_normals)
+    equal_weights = np.ones_like(weights_of_normals)
     crosses = cross_products(rest, mesh.faces)
     areas = np.linalg.norm(crosses, axis=1)
     is_unsound = np.zeros(count, dtype=np.bool_)
-    for weight in (weights, np.ones_like(weights)):
+    for weight in (weights_of_normals, equal_weights):  # normals must not cancel in either sum
         vectors = (weight[:, :, None] * crosses[:, None]).reshape(-1, 3)
         sums = np.linalg.norm(_sums(sectors.ravel(), vectors, count), axis=1)
         weighted_areas = (weight * areas[:, None]).reshape(-1, 1)

@@ -182,15 +182,25 @@ def linearise(
 @njit
 def slope(rows: Floats64, t: int, u: float, v: float, w: float, i: int) -> Vector:
     """Return the derivative of a place on patch t by its coordinate i, with the others fixed."""
-    at = (u, v, w)
+    place = (u, v, w)
     j = (i + 1) % 3
     k = (i + 2) % 3
-    total = times(3.0 * at[i] * at[i], row_of(rows, t, 3 * i))
-    total = plus(total, times(6.0 * at[i] * at[j], row_of(rows, t, 9 + 6 * i)))
-    total = plus(total, times(6.0 * at[i] * at[k], row_of(rows, t, 12 + 6 * i)))
-    total = plus(total, times(3.0 * at[j] * at[j], row_of(rows, t, 12 + 6 * j)))
-    total = plus(total, times(3.0 * at[k] * at[k], row_of(rows, t, 9 + 6 * k)))
-    return plus(total, times(6.0 * at[j] * at[k], row_of(rows, t, 27)))
+    own = place[i]
+    second = place[j]
+    third = place[k]
+    # Control points of the patch, in the order of patches.CONTROL_POINT_COUNT.
+    corner = row_of(rows, t, 3 * i)
+    toward_j = row_of(rows, t, 9 + 6 * i)
+    toward_k = row_of(rows, t, 12 + 6 * i)
+    from_j = row_of(rows, t, 12 + 6 * j)
+    from_k = row_of(rows, t, 9 + 6 * k)
+    middle = row_of(rows, t, 27)
+    total = times(3.0 * own * own, corner)
+    total = plus(total, times(6.0 * own * second, toward_j))
+    total = plus(total, times(6.0 * own * third, toward_k))
+    total = plus(total, times(3.0 * second * second, from_j))
+    total = plus(total, times(3.0 * third * third, from_k))
+    return plus(total, times(6.0 * second * third, middle))
 
 
 @njit

@@ -196,7 +196,7 @@ def _joined_corners(
 
 @njit
 def _corner_at(faces: Unsigned32, triangle: int, vertex: np.uint32) -> int:
-    """Return the last corner of a triangle at a vertex."""
+    """Return the number, 3 x triangle + 0, 1 or 2, of a triangle's last corner at a vertex."""
     found = 0
     for k in range(3):
         if faces[triangle, k] == vertex:

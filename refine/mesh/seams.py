@@ -54,12 +54,13 @@ def find_seams(
         }
     corner_uv = np.asarray(face_uv, dtype=np.int64).reshape(-1, 3)
     proper = is_proper.reshape(-1, 3)[:, 0]
+    first_sides = 3 * (sides[:, 0] >> 2) + (sides[:, 0] & 3)  # half-edge on which each edge begins
     place = np.cumsum(is_proper) - 1  # of a half-edge among those of proper triangles
     number, attribute_edges, attribute_edge_uv = _attribute_edges(
         corner_uv[proper],
         edge_of[is_proper].astype(np.int64),
         is_reversed[is_proper],
-        place[(sides[:, 0] >> 2) * 3 + (sides[:, 0] & 3)],
+        place[first_sides],
     )
     corners, wedge_vertices, wedge_uv = _wedges(faces.astype(np.int64), corner_uv, vertex_count)
     triangle_attribute_edges = np.full(faces.size, 2 * len(attribute_edges), dtype=np.uint32)
@@ -148,15 +149,17 @@ def _near_pairs(positions: Floats64, distance: float) -> Integers64:
     """
     lowest = positions.min(axis=0)
     side = max(4.0 * distance, 1e-6 * size_of(positions))  # a number of 64 bits must name any cube
-    cubes = [np.floor((positions - lowest + away) / side) + 1 for away in (-distance, distance)]
+    first_cube = np.floor((positions - lowest - distance) / side) + 1
+    last_cube = np.floor((positions - lowest + distance) / side) + 1
     keys = []
     members = []
-    for corner in itertools.product((0, 1), repeat=3):
-        cube = np.stack([cubes[end][:, axis] for axis, end in enumerate(corner)], axis=1)
-        is_other = (np.array(corner) == 0) | (cubes[0] != cubes[1])
-        chosen = np.flatnonzero(is_other.all(axis=1))
+    for takes_last in itertools.product((False, True), repeat=3):  # along each axis
+        cube = np.where(takes_last, last_cube, first_cube)
+        is_another = ~np.array(takes_last) | (last_cube != first_cube)
+        chosen = np.flatnonzero(is_another.all(axis=1))
         keys.append(cube[chosen].astype(np.int64) @ [1 << 42, 1 << 21, 1])
         members.append(chosen)
+    # Sorted by their cubes, places in one cube follow each other, 1, 2, ... steps apart.
     key = np.concatenate(keys)
     order = np.argsort(key, kind="stable")
     key = key[order]

@@ -119,10 +119,11 @@ class MarkingMode:
     def _turn(self) -> None:
         """Make the visible side the front; if it is the front already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
-        turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
+        to_front = max(axes_turned(), key=lambda axes: float((axes * seen).sum()))
+        is_front = np.array_equal(to_front, np.eye(3))
         # A right angle about the line of sight.
         quarter_turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-        self.marking.turn(quarter_turn if np.array_equal(turn, np.eye(3)) else turn)
+        self.marking.turn(quarter_turn if is_front else to_front)
 
     def _commands(self) -> tuple[Command, ...]:
         """Return the commands that only this mode has."""
