@@ -2,12 +2,14 @@
 
 import json
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from risorius import assets
+from risorius.assets.identities import Person, make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.geometry.arrays import Floats64, Integers32
 from risorius.geometry.sides import sides_of
@@ -36,6 +38,12 @@ class UserHead:
         found = vertices[landmarks].tolist() if points else np.asarray(landmarks).tolist()
         marks.write_text(json.dumps({"landmarks": found}))
         return mesh, marks
+
+
+@cache
+def person_of(number: int) -> Person:
+    """The person of a number, in the colours of the built-in head; made once in a process."""
+    return make_person(sample_identity(number))
 
 
 def write_topology(folder: Path, other: UserHead, **changes: Any) -> Path:

@@ -10,9 +10,8 @@ import pytest
 from risorius import assets, refine, sim
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.assets.fitting import fit
-from risorius.assets.identities import make_person, sample_identity
 from risorius.refine.kahler.table import CONFIGURATION_TABLE
-from tests.heads import user_head
+from tests.heads import person_of, user_head
 
 OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
 """Arrays of a refiner that subclasses may write: each frame writes all of them again."""
@@ -58,22 +57,17 @@ def own_head():
     return fit(brought.mesh, brought.landmarks)
 
 
-def person():
-    """A generated person."""
-    return make_person(sample_identity(63))
-
-
 READ_ONLY_OBJECTS = {
     "head": lambda head: head,
     "finer": lambda head: head.finer(1),
     "plane": lambda head: assets.load("plane"),
     "own head": lambda head: own_head(),
     "own mesh": lambda head: user_head().mesh,
-    "person": lambda head: person(),
+    "person": lambda head: person_of(63),
     "simulation": sim.create,
     "moved simulation": lambda head: moved(head),
     "face": lambda head: FaceScene(),
-    "person's face": lambda head: FaceScene(person()),
+    "person's face": lambda head: FaceScene(person_of(63)),
     "sine": lambda head: PlaneScene(),
     "connectivity": lambda head: refine.connect(head.faces, len(head.vertices)),
     "welded": lambda head: refine.WeldedRefiner(head.vertices, head.faces),

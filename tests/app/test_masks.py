@@ -15,7 +15,8 @@ from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.assets.identities import MASK_COLOURS, make_person, sample_identity, wearing
+from risorius.assets.identities import MASK_COLOURS, wearing
+from tests.heads import person_of
 
 SIZE = (160, 160)
 COVERED_SEGMENTS = {Segment.TOP_LIP, Segment.BOTTOM_LIP, Segment.MOUTH_INTERIOR}
@@ -31,7 +32,7 @@ POSES = {
 @pytest.mark.parametrize("number", [7, 12])
 def test_lips_stay_behind_a_mask(number):
     """No lip is visible in any pose or view, and landmarks of lips and chin are hidden."""
-    person = make_person(sample_identity(number))
+    person = person_of(number)
     scene = FaceScene(wearing(person, shirt="blue", cover="blue"))
     surface = render.open_offscreen(SIZE, samples=1)
     pipeline = Pipeline(scene, render.Renderer(surface))
@@ -72,7 +73,7 @@ def test_rows_of_the_table_choose_masks(tmp_path: Path):
 @pytest.mark.parametrize(("number", "frame"), [(3, "round"), (12, "oval"), (19, "rectangular")])
 def test_glasses_stand_before_a_mask(number, frame):
     """The rims of glasses do not sink into the mask over the nose."""
-    person = make_person(sample_identity(number))
+    person = person_of(number)
     worn = wearing(person, shirt="blue", frame=frame, cover="blue").parts
     parts = {part.name: part for part in worn}
     sheet = parts["mask"]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from risorius.app.scenes.mouth import shaded_mouth
+from tests.assets.checks import part_of
 
 
 def test_a_mouth_gets_darker_toward_the_back(face):
@@ -29,8 +30,8 @@ def test_a_mouth_gets_darker_toward_the_back(face):
 
 def test_a_tongue_has_a_groove_a_pale_coat_and_red_edges(face):
     """The tongue has a groove, a pale coat and red edges, instead of a single tone."""
-    tongue = next(part for part in face.parts if part.name == "tongue")
-    rest = next(part for part in face.head.parts if part.name == "tongue")
+    tongue = part_of(face, "tongue")
+    rest = part_of(face.head, "tongue")
     depth = rest.vertices[:, 2].max() - rest.vertices[:, 2]
     rows = (depth > 8.0) & (depth < 30.0) & (rest.normals[:, 1] > 0.7)
     beside = np.abs(rest.vertices[:, 0])

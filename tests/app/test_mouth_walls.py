@@ -20,10 +20,10 @@ from risorius.app.scenes import FaceScene
 from risorius.app.scenes.mouth import MouthWalls
 from risorius.assets import Segment
 from risorius.assets.fitting import fit
-from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.geometry.numbering import places_among
 from risorius.geometry.transforms import moved_points
+from tests.heads import person_of
 
 SIZE = (300, 300)
 JAW_POSES = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
@@ -76,7 +76,7 @@ def test_nothing_of_the_mouth_pierces_the_throat(renderer):
     """
     found = {}
     for number in (*range(28), 63, 189):
-        sitter = Sitter(FaceScene(make_person(sample_identity(number))), renderer)
+        sitter = Sitter(FaceScene(person_of(number)), renderer)
         for k, jaw in enumerate(JAW_POSES):
             sitter.scene.reset()
             for turn in (HEAD_TURNS[(number + k) % 8], HEAD_TURNS[(number + k + 3) % 8]):
@@ -165,7 +165,7 @@ def test_walls_end_above_the_chin(face):
 
     A deeper wall would pierce that skin.
     """
-    for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
+    for head in (face.head, person_of(63), person_of(6)):
         chin = head.vertices[head.landmarks[8], 1]
         walls = [part.vertices for part in head.parts if part.name.startswith("oral_cavity")]
         assert len(walls) == 2

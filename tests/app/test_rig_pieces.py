@@ -19,6 +19,7 @@ from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import eyeballs
 from risorius.geometry.arrays import Flags, Floats64
 from risorius.geometry.normals import vertex_normals
+from tests.assets.checks import part_of
 
 Triangles = npt.NDArray[np.int64]
 
@@ -36,7 +37,7 @@ class Maker:
 
     def part(self, name: str) -> tuple[Floats64, Triangles]:
         """A part of the built-in head."""
-        part = next(each for each in self.scene.parts if each.name == name)
+        part = part_of(self.scene, name)
         return np.array(part.vertices, np.float64), np.array(part.faces, np.int64)
 
     def shell(self, chosen: Flags, off: float) -> tuple[Floats64, Triangles]:

@@ -72,7 +72,7 @@ def check_part(part: Part, *, least_agreeing: float = 0.98) -> None:
     assert (agreeing > 0.0).mean() > least_agreeing, part.name
 
 
-def part(head: Head, name: str) -> Part:
+def part_of(head: Head, name: str) -> Part:
     """The part with this name."""
     return next(found for found in head.parts if found.name == name)
 

@@ -10,7 +10,6 @@ from risorius.assets.identities import (
     BEARD_NAME,
     coloured,
     colours_of_number,
-    make_person,
     person_called,
     recoloured,
     sample_identity,
@@ -19,13 +18,15 @@ from risorius.assets.identities.complexion import GREY_LIGHT
 from risorius.assets.identities.locks import VERTEX_COUNT
 from risorius.geometry.closest import closest_points
 from risorius.geometry.colour import to_screen
+from tests.assets.checks import part_of
+from tests.heads import person_of
 
 BEARDED = 91000162  # stubble of 0.7
 
 
 def beard_of(head):
     """The part of a person's beard."""
-    return next(part for part in head.parts if part.name == BEARD_NAME)
+    return part_of(head, BEARD_NAME)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_women_and_small_pictures_have_no_hairs_of_beards():
     """Pictures with small textures do not show hairs."""
     assert all(part.name != BEARD_NAME for part in person_called(11).parts)
     features = colours_of_number(sample_identity(BEARDED), BEARDED).features
-    small = coloured(make_person(sample_identity(BEARDED)), angle=40.0, features=features, shrink=4)
+    small = coloured(person_of(BEARDED), angle=40.0, features=features, shrink=4)
     assert all(part.name != BEARD_NAME for part in small.parts)
 
 
@@ -99,7 +100,7 @@ def test_beards_turn_grey_like_hair():
     chin = np.s_[1000:1060, 560:720]
     young, old = (each[chin].mean() for each in pictures)
     assert old > young + 8.0
-    person = make_person(sample_identity(BEARDED))
+    person = person_of(BEARDED)
     beard = beard_of(coloured(person, angle=40.0, features=replace(features, grey=0.5)))
     tones = beard.colours[VERTEX_COUNT - 1 :: VERTEX_COUNT].mean(axis=1)
     middle = 0.5 * (tones.min() + tones.max())

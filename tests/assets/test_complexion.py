@@ -20,7 +20,6 @@ from risorius.assets.identities import (
     drawn_irises,
     features_of,
     in_colours,
-    make_person,
     person_called,
     recoloured,
     sample_identity,
@@ -39,6 +38,7 @@ from risorius.assets.model import Segment
 from risorius.assets.pigments import SHIPPED_COMPLEXION
 from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
+from tests.heads import person_of
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
 TONE_ANGLES = st.floats(DARKEST_TONE, LIGHTEST_TONE)
@@ -116,7 +116,7 @@ def test_no_other_tones(angle):
 
 def test_eyes_have_their_colours(head):
     """Blue irises are bluest, brown ones reddest and darkest; only irises change."""
-    person = make_person(sample_identity(1))
+    person = person_of(1)
     iris = {}
     for name in IRIS_FREQUENCIES:
         eyed = coloured(person, angle=40.0, irises=name)
@@ -141,7 +141,7 @@ def test_eyes_have_their_colours(head):
 @pytest.mark.slow
 def test_colours_of_a_number(head):
     """A number always gives the same colours; dark skin goes with brown eyes."""
-    person = make_person(sample_identity(0))
+    person = person_of(0)
     first, second = (with_colours_of_number(person, 5) for _ in range(2))
     assert (first.albedo == second.albedo).all()
     assert (first.parts[0].colours == second.parts[0].colours).all()
@@ -220,7 +220,7 @@ def test_eyes_go_with_dark_skin():
 
     Irises are unchanged.
     """
-    person = make_person(sample_identity(1))
+    person = person_of(1)
     light, dark = (
         {part.name: part.colours for part in coloured(person, angle=angle).parts}
         for angle in (45.0, -40.0)
@@ -234,7 +234,7 @@ def test_eyes_go_with_dark_skin():
 
 def test_no_two_irises_are_alike():
     """Irises of one colour differ in lightness and in the ring around the pupil."""
-    person = make_person(sample_identity(1))
+    person = person_of(1)
     random = np.random.default_rng(2)
     drawn = [Features(iris=drawn_iris(30.0, chance, random)) for chance in random.random(8)]
     eyes = [coloured(person, angle=45.0, irises="blue", features=f).parts[0].colours for f in drawn]
@@ -245,7 +245,7 @@ def test_no_two_irises_are_alike():
 
 def test_irises_differ_in_fibres_and_edges():
     """Another seed puts an iris's fibres in other places; a limbus darkens only the edge."""
-    person = make_person(sample_identity(1))
+    person = person_of(1)
 
     def light_of(**own):
         """Light of the vertices of the left eyeball."""
@@ -304,7 +304,7 @@ def test_each_feature_has_its_effect(head):
     receded = Features(hairline=Hairline(front=20.0), brows=thick)
     usual, balder = (recoloured(40.0, features=f, haired_as=40.0) for f in (Features(), receded))
     assert (balder.astype(int) - usual)[head.segments == Segment.HAIR].mean() > 1.0
-    bald = coloured(make_person(sample_identity(1)), angle=40.0, features=receded).segments
+    bald = coloured(person_of(1), angle=40.0, features=receded).segments
     assert (bald == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
     for side in (Segment.LEFT_BROW, Segment.RIGHT_BROW):
         assert 0.4 < (bald == side).sum() / (head.segments == side).sum() < 2.5
@@ -390,7 +390,7 @@ def test_small_pictures_have_the_same_colours_of_fewer_texels(number):
 
     Hair and classes are the same.
     """
-    person = make_person(sample_identity(number))
+    person = person_of(number)
     colours = colours_of_number(person.identity, number)
     whole = in_colours(person, colours)
     small = in_colours(person, colours, shrink=4)

@@ -19,7 +19,7 @@ from risorius.assets.topology import boundary_loops
 from risorius.bench.subjects import decimated
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products, points_on_triangles, vertex_normals
-from tests.assets.checks import check_part
+from tests.assets.checks import check_part, part_of
 from tests.heads import UserHead, shape
 from tests.meshes import ball, flat_cross
 
@@ -77,7 +77,7 @@ def test_nothing_is_seen_behind_an_eye(fitted, yaw):
 
 def test_the_flesh_of_the_eyes_is_well_formed(fitted):
     """The flesh at the eyes is a valid part that reaches behind each eyeball."""
-    flesh = next(part for part in fitted.parts if part.name == "eye_corners")
+    flesh = part_of(fitted, "eye_corners")
     check_part(flesh)
     for eye in fitted.eyes:
         to = flesh.vertices - eye.centre

@@ -9,10 +9,9 @@ from risorius import assets
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import FIRST_LANDMARKS, centred, guess
 from risorius.assets.fitting.warp import nearest_on
-from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
 from risorius.sim.landmarks import MIRRORED_LANDMARKS
-from tests.heads import METRES_PER_MILLIMETRE, user_head
+from tests.heads import METRES_PER_MILLIMETRE, person_of, user_head
 
 JAW_COUNT = 17  # number of jaw landmarks, which come first and have no exact place along the jaw
 
@@ -37,7 +36,7 @@ def test_other_persons_are_found(seed):
 
     The jaw line is left out.
     """
-    person = make_person(sample_identity(seed))
+    person = person_of(seed)
     off = errors(Mesh(person.vertices, person.faces), person.vertices[person.landmarks])
     assert np.median(off[JAW_COUNT:]) < 1.5
     assert off[JAW_COUNT:].max() < 6.0
@@ -84,7 +83,7 @@ def test_one_point_of_a_brow_moves_both(head):
 @pytest.mark.slow
 def test_more_points_make_it_better_and_stay():
     """Given points stay where they are, and further ones improve the guess of their neighbours."""
-    person = make_person(sample_identity(1))
+    person = person_of(1)
     mesh = Mesh(person.vertices, person.faces)
     true = person.vertices[person.landmarks]
     few = errors(mesh, true)

@@ -28,7 +28,8 @@ from risorius.assets.identities.long_hair import _between_ways, _skin_reach
 from risorius.geometry.closest import closest_points
 from risorius.geometry.directions import unit_vectors
 from risorius.render import Style
-from tests.assets.checks import check_part
+from tests.assets.checks import check_part, part_of
+from tests.heads import person_of
 
 
 @cache
@@ -42,7 +43,7 @@ def haired(cut, *, receded=0.0, length=1.0):
 
 def hair_of(person, name=HAIR_NAME):
     """A part of the person's hair, by default the hair on the scalp."""
-    return next(part for part in person.parts if part.name == name)
+    return part_of(person, name)
 
 
 @pytest.mark.parametrize("cut", HAIR_CUTS)
@@ -123,7 +124,7 @@ def test_bobs_are_cut_off_without_a_veil():
 
     Down to there, the density is above 0.5, at which half of the locks end.
     """
-    hair = next(part for part in person_called(28).parts if part.name == HAIR_NAME)
+    hair = part_of(person_called(28), HAIR_NAME)
     dense = hair.striation[:, 5].reshape(51, -1)[15:36]
     tips = hair.vertices.reshape(51, -1, 3)[15:36, -2:]
     assert np.linalg.norm(np.diff(tips, axis=1), axis=2).max() < 12.0
@@ -169,7 +170,7 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin():
     """Another skin tone leaves the scalp below hair unchanged; newly made hair follows the tone."""
     ada = person_called("ada")
     assert ada.in_tone is not None
-    assert make_person(sample_identity(0)).in_tone is None
+    assert person_of(0).in_tone is None
     change = np.abs(ada.in_tone(-40.0).astype(float) - ada.albedo).mean(axis=2)
     scale = len(change) // len(ada.segments)
     segments = np.kron(ada.segments, np.ones((scale, scale), np.uint8))
@@ -286,7 +287,7 @@ def test_hair_behind_ears_lies_above_the_skin():
 def test_the_inner_side_of_tied_hair_stands_off_the_skin(number):
     """No inner side lies on the skin: in the groove before an ear it showed as black dashes."""
     person = person_called(number)
-    inside = next(part for part in person.parts if part.name == "hair_inside")
+    inside = part_of(person, "hair_inside")
     places = inside.vertices.astype(np.float64)
     nearest = closest_points(places, person.vertices, person.faces)
     away = np.linalg.norm(places - nearest.interpolate(person.vertices), axis=1)
@@ -331,7 +332,7 @@ def test_strands_stand_up_at_a_whorl_and_lie_around_it():
 def test_triangles_of_the_nape_cut_no_corners_out_of_tied_hair(number):
     """In the hollow nape the layers lie over the coarse triangles of skin; once below."""
     person = person_called(number)
-    hair = next(part for part in person.parts if part.name == HAIR_NAME)
+    hair = part_of(person, HAIR_NAME)
     is_nape = (np.abs(hair.vertices[:, 0]) < 15.0) & (hair.vertices[:, 2] < -45.0)
     is_nape &= (hair.striation[:, 5] > 0.2) & (hair.vertices[:, 1] < -65.0)
     layers = hair.vertices[is_nape].astype(np.float64)

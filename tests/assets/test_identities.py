@@ -29,6 +29,7 @@ from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.intersections import self_intersections
 from tests.assets.checks import mirror_error
+from tests.heads import person_of
 from tests.sim.poses import inverted_triangles
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -104,7 +105,7 @@ def test_an_even_face_is_its_own_mirror_image(seed):
     even = make_person(sample_identity(seed, is_even=True))
     assert mirror_error(even.vertices, even.mirror) < 1e-6
     assert np.abs(even.vertices[even.mirror == np.arange(len(even.mirror)), 0]).max() < 1e-6
-    uneven = make_person(sample_identity(seed))
+    uneven = person_of(seed)
     assert 0.1 < mirror_error(uneven.vertices, uneven.mirror) < 8.0
 
 
@@ -239,7 +240,7 @@ def test_upper_lids_cover_a_part_of_the_iris():
     With less, a person would stare.
     """
     for seed in range(8):
-        person = make_person(sample_identity(seed))
+        person = person_of(seed)
         for eye in person.eyes:
             lids = [person.anatomy[f"palpebrale_{lid}erius_{eye.name}"] for lid in ("sup", "inf")]
             off = np.abs(person.vertices[lids, 1] - eye.centre[1])

@@ -11,6 +11,7 @@ from risorius.assets.identities.larynx import larynx_of
 from risorius.assets.identities.lids import fold_of
 from risorius.assets.identities.sternomastoid import height_of, sternomastoids_of
 from risorius.assets.loading import load
+from tests.heads import person_of
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +47,7 @@ def test_creases_lie_as_high_as_the_identity_says(person):
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_creases_have_no_kinks(side):
     """Person 43's crease follows a smooth curve, although the lid's edge has only eleven points."""
-    lids = fold_of(make_person(sample_identity(43)), side, 1280)
+    lids = fold_of(person_of(43), side, 1280)
     beyond = 0.22  # share of light that is missing below the crease, too
     dark = np.maximum(1.0 - lids.light - beyond, 0.0)
     dark = dark[:, dark.max(axis=0) > 0.05]

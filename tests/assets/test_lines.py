@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from risorius.assets.identities import Sex, coloured, make_person, sample_identity
+from risorius.assets.identities import Sex, coloured, sample_identity
 from risorius.assets.identities.furrow_map import _line_regions, shared_map, with_lines
 from risorius.assets.identities.furrows import SAMPLE_SPACING, crows_feet
 from risorius.assets.identities.lines import ExpressionLines, Fan, Spread
 from risorius.assets.loading import load
+from tests.heads import person_of
 
 PLAIN_LINES = ExpressionLines(
     seed=5,
@@ -178,7 +179,7 @@ def test_small_pictures_have_fewer_texels_of_the_same_lines():
     means = whole.reshape(640, 2, 640, 2, 4).mean(axis=(1, 3))
     assert np.abs(means - half)[..., :3].mean() < 0.1
     assert np.corrcoef(means[..., 2].ravel(), half[..., 2].ravel())[0, 1] > 0.97
-    person = make_person(sample_identity(6))
+    person = person_of(6)
     small = coloured(person, angle=40.0, shrink=4).wrinkles.map
     below = slice(about("subnasale", 0, 0)[0].start // 4, None)  # below the lids
     assert_array_equal(small[below], shared_map(4)[below])

@@ -16,9 +16,10 @@ from risorius.assets.identities.single_hairs import LOCK_COUNT
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import cross_products
 from risorius.render import Style
+from tests.assets.checks import part_of
 
 
-def person_of(name):
+def head_called(name):
     """The built-in head, or a person by number or name."""
     return load("head") if name == "head" else person_called(name)
 
@@ -26,7 +27,7 @@ def person_of(name):
 def picture(name, view, size=(700, 700)):
     """A picture on nothing, RGBA."""
     with Capture(
-        FaceScene(person_of(name)), CaptureOptions(size, style=Style(background=None))
+        FaceScene(head_called(name)), CaptureOptions(size, style=Style(background=None))
     ) as c:
         c.camera = camera_for(c.scene, view)
         return c.draw_image().astype(np.float64)
@@ -84,8 +85,8 @@ def pixels_of(camera, places, size):
 @pytest.mark.parametrize("name", [7, 19])
 def test_a_whorl_is_no_flat_disc(name):
     """At the whorl strands differ from each other; they had one tone there."""
-    hair = next(part for part in person_of(name).parts if part.name == "hair")
-    camera = camera_for(FaceScene(person_of(name)), "180,55")
+    hair = part_of(head_called(name), "hair")
+    camera = camera_for(FaceScene(head_called(name)), "180,55")
     place = hair.vertices[np.argmin(hair.striation[:, 1])]
     column, row = pixels_of(camera, place[None], 500)[0]
     light = picture(name, "180,55", (500, 500))[..., :3].mean(axis=2)
@@ -100,7 +101,7 @@ def test_locks_of_the_nape_lie_side_by_side(name):
 
     The agreement is the length of the mean of nine neighbouring unit directions.
     """
-    parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
+    parts = built_in_hair(load("head")) if name == "head" else head_called(name).parts
     locks = next(part for part in parts if part.name == "hair_locks")
     roots = locks.vertices[::VERTEX_COUNT]
     directions = locks.striation[::VERTEX_COUNT, :3]
@@ -114,7 +115,7 @@ def test_locks_of_the_nape_lie_side_by_side(name):
 @pytest.mark.parametrize("number", [92000104, 92000113])
 def test_tied_hair_lies_smooth(number):
     """Nine of ten locks end within 3 mm of the layers; they stood off by 6 mm, like a comb."""
-    parts = {part.name: part for part in person_of(number).parts}
+    parts = {part.name: part for part in head_called(number).parts}
     layers = parts["hair"]
     tips = parts["hair_locks"].vertices[VERTEX_COUNT - 1 :: VERTEX_COUNT].astype(np.float64)
     outline = layers.vertices.astype(np.float64)
@@ -155,13 +156,13 @@ def test_tied_hair_is_seen_from_the_front(name, least):
 
     The test counts its pixels; pictures once showed only a cap of hair.
     """
-    scene = FaceScene(person_of(name))
+    scene = FaceScene(head_called(name))
     with Capture(scene, CaptureOptions((300, 300), passes=("segmentation",))) as capture:
         capture.draw_image()
         passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
         labels = passes.draw(capture.camera, capture.options.style, ("segmentation",))
         is_hair = labels["segmentation"] == Segment.HAIR
-        tied = next(part for part in scene.head.parts if part.name == "hair_tied")
+        tied = part_of(scene.head, "hair_tied")
         seen = pixels_of(capture.camera, tied.vertices, 300)
     box = np.zeros_like(is_hair)
     left, top = seen.min(axis=0)
@@ -192,7 +193,7 @@ def test_bobs_end_in_tips_and_not_in_teeth(number):
 @pytest.mark.parametrize("name", ["head", 40])
 def test_hairs_of_the_outline_are_fine(name):
     """Except at the whorl, locks of short hair are 0.1 mm wide; they were 0.2 mm, like thorns."""
-    parts = built_in_hair(load("head")) if name == "head" else person_of(name).parts
+    parts = built_in_hair(load("head")) if name == "head" else head_called(name).parts
     part_called = {part.name: part for part in parts}
     hair = part_called["hair"]
     locks = part_called["hair_locks"]

@@ -5,7 +5,7 @@ from numpy.linalg import norm
 from pytest import approx
 
 from risorius.geometry.directions import unit_vectors
-from tests.assets.checks import check_part, part, winding_numbers
+from tests.assets.checks import check_part, part_of, winding_numbers
 
 BONES = {"cranium", "mandible", "eye_left", "eye_right", "neck"}
 IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")
@@ -29,15 +29,15 @@ def test_parts_of_the_jaw_move_with_it(head):
 def test_parts_look_outward_or_into_the_mouth(head):
     """Teeth and eyes face away from their middle; the cavity is visible from inside."""
     for name in ("eyeball_left", "tongue"):
-        found = part(head, name)
+        found = part_of(head, name)
         away = found.vertices - found.vertices.mean(axis=0)
         assert (found.normals * away).sum(axis=1).mean() > 0.0
-    flesh = part(head, "eye_corners")
+    flesh = part_of(head, "eye_corners")
     assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides face sideways
-    cavity = part(head, "oral_cavity_upper")
+    cavity = part_of(head, "oral_cavity_upper")
     inward = np.array([0.0, -75.0, 56.0]) - cavity.vertices
     assert ((cavity.normals * inward).sum(axis=1) > 0.0).mean() > 0.95
-    assert part(head, "oral_cavity_lower").normals[:, 1].mean() > 0.5
+    assert part_of(head, "oral_cavity_lower").normals[:, 1].mean() > 0.5
 
 
 def test_everything_in_the_mouth_is_inside_the_head(head):
@@ -51,7 +51,7 @@ def test_everything_in_the_mouth_is_inside_the_head(head):
 
 def test_teeth_darken_toward_the_corners_of_the_mouth(head):
     """Premolars have about half the lightness of incisors, because cheeks shade them."""
-    teeth = part(head, "teeth_upper")
+    teeth = part_of(head, "teeth_upper")
     lightness = teeth.colours.mean(axis=1)
     aside = np.abs(teeth.vertices[:, 0])
     incisors = lightness[aside < 12.0].mean()
@@ -63,7 +63,7 @@ def test_teeth_stand_behind_the_lips(head):
     """The vestibule (the space behind the lips) ends in front of the teeth."""
     vestibule = head.vertices[head.rings["mouth_0_left"]]
     for name in ("teeth_upper", "teeth_lower"):
-        teeth = part(head, name).vertices
+        teeth = part_of(head, name).vertices
         for x, _, z in vestibule[[0, 3, 7, 11, 14]]:
             beside = np.abs(teeth[:, 0] - x) < 3.0
             assert teeth[beside, 2].max() < z, name
@@ -72,7 +72,7 @@ def test_teeth_stand_behind_the_lips(head):
 def test_teeth_are_pairs_of_fourteen_and_ivory(head):
     """Each jaw has two mirrored quarters of seven teeth; their colour is warm, not white."""
     for name in ("teeth_upper", "teeth_lower"):
-        teeth = part(head, name)
+        teeth = part_of(head, name)
         assert len(teeth.vertices) % 14 == 0
         assert teeth.vertices[:, 0].min() == approx(-teeth.vertices[:, 0].max())
         red, _, blue = teeth.colours.max(axis=0)
@@ -82,8 +82,8 @@ def test_teeth_are_pairs_of_fourteen_and_ivory(head):
 
 def test_upper_incisors_overlap_the_lower(head):
     """Overbite and overjet of the incisors are one to four millimetres."""
-    upper = part(head, "teeth_upper").vertices
-    lower = part(head, "teeth_lower").vertices
+    upper = part_of(head, "teeth_upper").vertices
+    lower = part_of(head, "teeth_lower").vertices
     front = [teeth[np.abs(teeth[:, 0]) < 4.0] for teeth in (upper, lower)]
     assert 1.0 < front[1][:, 1].max() - front[0][:, 1].min() < 4.0
     assert 1.0 < front[0][:, 2].max() - front[1][:, 2].max() < 4.0
@@ -92,7 +92,7 @@ def test_upper_incisors_overlap_the_lower(head):
 def test_mouth_is_darker_toward_the_throat(head):
     """Teeth and cheeks lose light toward the throat, but the throat is not black."""
     for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
-        found = part(head, name)
+        found = part_of(head, name)
         depth = found.vertices[:, 2]
         brightness = found.colours.mean(axis=1)
         front = brightness[depth > np.percentile(depth, 80)].mean()
@@ -109,8 +109,8 @@ def is_beside(points, least, most):
 def test_gums_hold_the_teeth(head):
     """Every crown has its root in gum, and its visible height is that of real teeth."""
     for row, up in (("upper", 1.0), ("lower", -1.0)):
-        teeth = part(head, f"teeth_{row}").vertices
-        gums = part(head, f"gums_{row}").vertices
+        teeth = part_of(head, f"teeth_{row}").vertices
+        gums = part_of(head, f"gums_{row}").vertices
         margin = up * gums[:, 1]
         for low, high, least, most in ((0.0, 9.0, 6.5, 10.0), (24.0, 30.0, 2.0, 7.0)):
             of_teeth, of_gums = (is_beside(each, low, high) for each in (teeth, gums))
@@ -125,7 +125,7 @@ def test_the_tongue_lies_against_the_lower_crowns(head):
 
     The inner sides of these teeth are therefore hidden.
     """
-    tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
+    tongue, teeth = (part_of(head, name).vertices for name in ("tongue", "teeth_lower"))
     for z in (80.0, 75.0, 68.0, 59.0):
         is_crown = (np.abs(teeth[:, 2] - z) < 1.5) & (teeth[:, 1] > -75.0)
         inner = teeth[is_crown & (teeth[:, 0] > 4.0), 0].min()  # [mm]; of the left crowns
@@ -151,7 +151,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
 
 def test_lashes_are_rooted_in_the_lids_edges(head):
     """Each lash begins on a lid margin, points away from the eye, and is off the eyeball."""
-    lashes = part(head, "lashes")
+    lashes = part_of(head, "lashes")
     assert lashes.roots is not None
     assert lashes.strand_radius > 0.0
     edges = np.vstack([head.vertices[head.rings[f"eye_2_{side}"]] for side in ("right", "left")])
@@ -169,7 +169,7 @@ def test_lashes_are_rooted_in_the_lids_edges(head):
 
 def test_lashes_are_curves(head):
     """A lash bends by at most 30 degrees at a joint; one of two or three segments bent by 44."""
-    lashes = part(head, "lashes")
+    lashes = part_of(head, "lashes")
     for root in np.unique(lashes.roots):
         lash = lashes.vertices[lashes.roots == root].astype(np.float64)
         rings = lash[:-1].reshape(-1, 3, 3).mean(axis=1)
@@ -181,7 +181,7 @@ def test_lashes_are_curves(head):
 
 def test_lower_lashes_are_short_and_lean_outward(head):
     """Lower lashes are short and lean outward; long straight ones would look like a doll's."""
-    lashes = part(head, "lashes")
+    lashes = part_of(head, "lashes")
     eye = head.eyes[1]
     tips = np.flatnonzero(np.diff(lashes.roots, append=-1))
     tips = tips[lashes.vertices[tips, 0] > 0.0]
@@ -199,7 +199,7 @@ def test_lower_lashes_are_short_and_lean_outward(head):
 
 def test_wet_edges_lie_between_lid_and_eyeball(head):
     """Wet edges lie on the lower lids, face up and forward, and hardly rise above the ball."""
-    wet = part(head, "wet_edges")
+    wet = part_of(head, "wet_edges")
     assert wet.roots is not None
     assert (wet.roots == np.arange(len(wet.vertices))).all()
     assert wet.normals.mean(axis=0)[1:].min() > 0.3
@@ -212,7 +212,7 @@ def test_wet_edges_lie_between_lid_and_eyeball(head):
 def test_eyeballs_fit_their_lids(head):
     """Lid margins do not touch the eyeball, and the ball fills the opening between the lids."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
-        ball = part(head, f"eyeball_{side}").vertices - eye.centre
+        ball = part_of(head, f"eyeball_{side}").vertices - eye.centre
         radius = norm(ball, axis=1)
         assert radius.min() == approx(eye.radius, abs=0.01)
         assert eye.radius + 0.8 < radius.max() < eye.radius + 2.0  # the cornea
@@ -224,7 +224,7 @@ def test_eyeballs_fit_their_lids(head):
 def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
     """The pupil is dark, the iris a coloured ring of its radius, and the sclera light."""
     eye = head.eyes[1]
-    ball = part(head, "eyeball_left")
+    ball = part_of(head, "eyeball_left")
     local = ball.vertices - eye.centre
     beside = np.hypot(local[:, 0], local[:, 1])
     ahead = local[:, 2] > 0
@@ -239,7 +239,7 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
 
 def test_upper_lid_throws_a_shadow_on_the_eye(head):
     """The sclera is painted darker at the top than below, by a quarter to a half."""
-    ball = part(head, "eyeball_left")
+    ball = part_of(head, "eyeball_left")
     local = ball.vertices - head.eyes[1].centre
     sclera = (local[:, 2] > 6.0) & (np.hypot(local[:, 0], local[:, 1]) > 6.8)
     brightness = ball.colours.mean(axis=1)
@@ -250,7 +250,7 @@ def test_upper_lid_throws_a_shadow_on_the_eye(head):
 
 def test_eye_corners_are_filled(head):
     """Flesh fills the eye's corners, from the ball to both ends, behind the lid margin."""
-    flesh = part(head, "eye_corners").vertices
+    flesh = part_of(head, "eye_corners").vertices
     for name in ("endocanthion_left", "exocanthion_left"):
         corner = head.vertices[head.anatomy[name]]
         assert norm(flesh - corner, axis=1).min() < 4.0

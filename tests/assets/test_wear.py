@@ -9,19 +9,19 @@ from risorius.assets.identities import (
     GLASSES_FRAMES,
     HAIR_NAME,
     SHIRT_COLOURS,
-    make_person,
     person_called,
-    sample_identity,
     wearing,
 )
 from risorius.assets.identities.wear import GLASSES_NAME, glasses
 from risorius.geometry.rays import crossings
+from tests.assets.checks import part_of
+from tests.heads import person_of
 
 
 @pytest.fixture(scope="module")
 def people():
     """Three persons."""
-    return [make_person(sample_identity(number)) for number in (3, 7, 12)]
+    return [person_of(number) for number in (3, 7, 12)]
 
 
 @pytest.mark.parametrize("name", GLASSES_FRAMES)
@@ -140,7 +140,7 @@ def test_loose_hair_lies_over_a_rolled_collar(turn):
     """
     worn = wearing(person_called(777000052), shirt="red", collar="roll")
     shirt = shirt_of(worn).vertices
-    hair = next(part for part in worn.parts if part.name == HAIR_NAME).vertices
+    hair = part_of(worn, HAIR_NAME).vertices
     (hair_angle, hair_far), (cloth_angle, cloth_far) = map(around_the_neck, (hair, shirt))
     checked = 0
     for angle, height, far in zip(hair_angle + turn, hair[:, 1], hair_far, strict=True):

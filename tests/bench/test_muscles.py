@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.identities import make_person, sample_identity
 from risorius.bench.muscles import (
     MOST_ELSEWHERE,
     MOVED_REGIONS,
@@ -19,6 +18,7 @@ from risorius.bench.muscles import (
     targets,
 )
 from risorius.sim.coordinates import FaceSpace
+from tests.heads import person_of
 from tests.sim.poses import settled_displacement
 
 NO_MUSCLES = {"cheek_puff", "upper_lip_shrug", "lips_sideways"}  # pressure, and pushes from below
@@ -96,5 +96,5 @@ def test_landmarks_lie_in_their_regions(head, landmark, region):
 
 def test_persons_have_the_same_muscles():
     """The bound holds on a head with another form."""
-    rows = list(measure_head("person 7", make_person(sample_identity(7))))
+    rows = list(measure_head("person 7", person_of(7)))
     assert all(target.is_met for target in targets(rows))

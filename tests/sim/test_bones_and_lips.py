@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.identities import make_person, sample_identity
 from risorius.geometry.transforms import moved_points
 from risorius.sim.skin_graph import graph_of
+from tests.heads import person_of
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
 NOSE_TIP = 30
@@ -37,7 +37,7 @@ def test_the_end_of_a_neck_stays_in_its_collar(number):
 
     It rose out of the collar of persons whose chins lie low, and showed the throat from behind.
     """
-    person = make_person(sample_identity(number))
+    person = person_of(number)
     weights = sim.create(person).bones.head_weight
     border = graph_of(person.faces, len(person.vertices)).border
     lowest_of_face = person.vertices[person.landmarks[CHIN_LANDMARK], 1]

@@ -5,12 +5,12 @@ import pytest
 from numpy.linalg import norm
 
 from risorius import refine, sim
-from risorius.assets.identities import make_person, sample_identity
 from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
 from risorius.geometry.transforms import moved_points
 from risorius.refine.mesh.creases import dihedral_angles
 from risorius.sim.contact import PRESSED_OVERLAP
 from risorius.sim.face_model import build_face_model
+from tests.heads import person_of
 from tests.sim.poses import (
     FRAME_TIME,
     both_sides,
@@ -153,7 +153,7 @@ def test_lips_that_move_sideways_leave_no_crack_below_the_nose(simulation, head,
 
 def test_lips_that_move_sideways_fold_no_chin():
     """In `mouthLeft` no edge of this person's chin bends by 20 degrees; by 33 was a furrow."""
-    person = make_person(sample_identity(19))
+    person = person_of(19)
     simulation = sim.Simulation(build_face_model(person))
     moved = person.vertices + settled_displacement(simulation, {"mouthLeft": 1.0})
     marks = person.vertices[person.landmarks]
@@ -172,7 +172,7 @@ def test_lips_that_move_sideways_fold_no_chin():
 
 def test_rounded_lips_leave_the_sills_of_nostrils():
     """Skin beside the base of the nose turns by less than a right angle on a short upper lip."""
-    woman = make_person(sample_identity(18))
+    woman = person_of(18)
     simulation = sim.Simulation(build_face_model(woman))
     moved = settled_displacement(simulation, {"AU18": 1.0, "AU22": 0.1, "AU26": 0.11})
     away = woman.vertices - woman.vertices[woman.landmarks[33]]

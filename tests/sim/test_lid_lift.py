@@ -14,6 +14,7 @@ from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
+from tests.assets.checks import part_of
 from tests.heads import UserHead
 
 CLEARANCE = 0.3  # [mm]
@@ -81,7 +82,7 @@ def test_the_drawn_eyeball_fits_the_lifted_lids(head):
     """
     for eye in head.eyes:
         ball = Eyeball(Side(eye.name), eye.centre, eye.radius)
-        part = next(part for part in head.parts if part.name == f"eyeball_{eye.name}")
+        part = part_of(head, f"eyeball_{eye.name}")
         drawn = part.vertices[part.vertices[:, 2] > eye.centre[2] + 1.0].astype(np.float64)
         inward = drawn - CLEARANCE * (drawn - eye.centre) / eye.radius
         tiny = inward[:, None] + [[0.0, 0.0, 0.0], [1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0]]

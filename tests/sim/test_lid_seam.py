@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from risorius import sim
 from risorius.assets.coarse import coarse_head
-from risorius.assets.identities import make_person, sample_identity
 from risorius.geometry.sides import sides_of
 from risorius.sim.face_model import build_face_model
 from risorius.sim.landmarks import EYE_LANDMARKS, Side
@@ -25,6 +24,7 @@ from risorius.sim.lids import lid_axes
 from risorius.sim.rig import Eyes
 from risorius.sim.skull import Eyeball
 from risorius.sim.surface import build_surface
+from tests.heads import person_of
 from tests.sim.poses import both_sides, settled_displacement
 
 COLUMN_FRACTIONS = np.linspace(0.0, 1.0, LID_COLUMNS)
@@ -92,7 +92,7 @@ def test_a_shut_lid_of_deep_set_eyes_lies_on_the_ball():
 
     An old man's lid once stood 6 mm before the ball under a high brow.
     """
-    man = make_person(sample_identity(47))
+    man = person_of(47)
     simulation = sim.Simulation(build_face_model(man))
     shut = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
     moved = settled_displacement(simulation, shut)
@@ -146,7 +146,7 @@ def test_vertices_of_an_edge_are_on_its_lid():
 
 def test_the_inner_third_of_a_shut_upper_lid_covers_the_lower(head):
     """The upper edge lies at most 0.1 mm behind the lower one, which showed as pale scraps."""
-    person = make_person(sample_identity(18))
+    person = person_of(18)
     shut = sim.create(person)
     x = person.vertices + settled_displacement(shut, {"AU43": 1.0})
     ring = head.rings["eye_2_left"]
@@ -160,7 +160,7 @@ def test_a_shut_upper_lid_lies_in_front_of_the_lower(of_person):
 
     The lids slide, so the upper lid meets another part of the lower than the one below it at rest.
     """
-    head = make_person(sample_identity(18)) if of_person else coarse_head()
+    head = person_of(18) if of_person else coarse_head()
     shut = sim.create(head)
     settled_displacement(shut, {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
     model = shut._model

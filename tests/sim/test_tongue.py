@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.identities import make_person, sample_identity
 from risorius.geometry.transforms import moved_points
-from tests.assets.checks import part, winding_numbers
+from tests.assets.checks import part_of, winding_numbers
+from tests.heads import person_of
 from tests.sim.poses import FRAME_TIME, settled_displacement, without
 
 LOWER_LIP = 66
@@ -49,13 +49,13 @@ def test_a_resting_tongue_is_the_part(simulation, head):
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
     assert bent is not None
-    assert np.abs(bent - part(head, "tongue").vertices).max() < 1e-4
+    assert np.abs(bent - part_of(head, "tongue").vertices).max() < 1e-4
 
 
 @pytest.mark.parametrize("jaw", [0.25, 0.35, 0.6])
 def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
     """The tongue comes out farther and farther, and finally hangs before the lower lip."""
-    tip = part(head, "tongue").vertices[:, 2].argmax()
+    tip = part_of(head, "tongue").vertices[:, 2].argmax()
     reach = []
     for out in (0.0, 0.25, 0.5, 0.75, 1.0):
         settled_displacement(simulation, {"jaw_open": jaw, "tongue_out": out})
@@ -69,7 +69,7 @@ def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
 
 def test_a_tongue_that_is_out_has_a_groove(simulation, head):
     """A tongue that is out is lowest in the middle before the lip, but not at its tip."""
-    tongue = part(head, "tongue")
+    tongue = part_of(head, "tongue")
     settled_displacement(simulation, {"jaw_open": 0.5, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
     depth = tongue.vertices[:, 2].max() - tongue.vertices[:, 2]
@@ -92,9 +92,9 @@ def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
 
 def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
     """In t, d, n and l the tip is behind the incisors, near them, and above their edges."""
-    teeth = part(head, "teeth_upper").vertices
+    teeth = part_of(head, "teeth_upper").vertices
     incisors = teeth[np.abs(teeth[:, 0]) < 5.0]
-    tip = part(head, "tongue").vertices[:, 2].argmax()
+    tip = part_of(head, "tongue").vertices[:, 2].argmax()
     for sound in ("DD", "nn"):
         settled_displacement(simulation, {f"viseme_{sound}": 1.0})
         now = tongue_now(simulation)[tip]
@@ -111,13 +111,13 @@ def test_the_tongue_pierces_nothing(simulation, head, pose):
     """Neither skin before the teeth nor a front tooth is inside the tongue."""
     settled_displacement(simulation, pose)
     tongue = tongue_now(simulation)
-    faces = part(head, "tongue").faces
+    faces = part_of(head, "tongue").faces
     skin = with_middles(simulation.positions, head.faces)
     x, y, z = skin.T
     skin = skin[(np.abs(x) < 30.0) & (z > 88.0) & (y < -40.0)]
     assert not is_within(skin, tongue, faces).any()
     for name in ("teeth_upper", "teeth_lower"):
-        teeth = part(head, name)
+        teeth = part_of(head, name)
         points = placed(
             simulation, with_middles(teeth.vertices.astype(float), teeth.faces), teeth.bone
         )
@@ -127,7 +127,7 @@ def test_the_tongue_pierces_nothing(simulation, head, pose):
 
 def test_the_measure_detects_points_inside(head):
     """The measure reports the middle of the tongue as inside, and a point above as outside."""
-    tongue = part(head, "tongue")
+    tongue = part_of(head, "tongue")
     points = np.array([[0.0, -77.0, 65.0], [0.0, -50.0, 65.0], [12.0, -77.0, 60.0]])
     found = is_within(points, tongue.vertices.astype(float), tongue.faces)
     assert found.tolist() == [True, False, True]
@@ -167,7 +167,7 @@ def test_the_tongue_of_a_small_mouth_comes_out(number, control, least):
 
     least: how far the tip comes forward, with the way down over the lip [mm].
     """
-    simulation = sim.create(make_person(sample_identity(number)))
+    simulation = sim.create(person_of(number))
     before = tongue_now(simulation)
     tip = before[:, 2].argmax()
     settled_displacement(simulation, {control: 1.0})

@@ -20,6 +20,7 @@ from risorius.bench.subjects import decimated
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import cross_products
 from risorius.geometry.sides import edges_of
+from tests.assets.checks import part_of
 
 from ...heads import UserHead
 from ...meshes import flat_cross, open_grid
@@ -133,7 +134,7 @@ def test_no_iris_pierces_a_shut_lid_of_few_triangles(head, tmp_path):
     """
     scene, mesh = _shut_eyes_of_few_triangles(head, tmp_path)
     for eye in scene.head.eyes:
-        part = next(part for part in scene.head.parts if part.name == f"eyeball_{eye.name}")
+        part = part_of(scene.head, f"eyeball_{eye.name}")
         away = part.vertices - eye.centre
         is_front = (np.abs(away[:, :2]) < 4.0).all(axis=1) & (away[:, 2] > 0.0)
         front = part.vertices[is_front].astype(np.float64)
