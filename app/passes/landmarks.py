@@ -16,6 +16,7 @@ from risorius.geometry.arrays import Flags, Floats32, Floats64
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.polylines import arc_lengths, evenly_spaced
+from risorius.geometry.rays import crossings
 from risorius.geometry.transforms import moved_points
 
 from ..scenes import Face
@@ -63,6 +64,7 @@ def landmarks_in(
             _is_on_surface(points[JAW_COUNT:], tolerance, camera, depth),
         ]
     )
+    visible[-len(EYE_SIDES) :] &= _is_uncovered_by_skin(face, points[-len(EYE_SIDES) :], camera)
     return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
 
 
@@ -154,6 +156,23 @@ def _pupils(face: Face) -> Floats64:
         front = ball.vertices[ball.vertices[:, 2].argmax()]
         pupils.append(moved_points(bones[bone], front))
     return np.array(pupils)
+
+
+def _is_uncovered_by_skin(face: Face, points: Floats64, camera: CameraLabels) -> Flags:
+    """Return which points (n, 3) see the camera past the outer side of the skin, (n,).
+
+    Depths cannot show whether a pupil is behind a lid: in small pictures, a pixel is wider than a
+    lid is thick.
+    """
+    skin = face.positions[face.head.faces]
+    eye = -camera.rotation.T @ camera.translation
+    is_free = []
+    for point in points:
+        volume, u, v, t = crossings(point, eye - point, skin)
+        # A line from a pupil to the camera leaves the head through the skin's inner side.
+        is_met = (volume < 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > 0.0)
+        is_free.append(not is_met.any())
+    return np.array(is_free)
 
 
 def _is_on_surface(

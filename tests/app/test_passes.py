@@ -201,5 +201,8 @@ def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio):
         found = landmarks_in(scene.face, camera, depth)
         assert (found.visible[68:] == is_seen).all()
         assert found.visible[17:36].all()
+    # In a picture of 100 x 100 pixels, a pixel is wider than a lid is thick.
+    small = CameraLabels.from_camera(studio.camera, (100, 100))
+    assert not landmarks_in(scene.face, small, depth[2::5, 2::5]).visible[68:].any()
     cut = landmarks_in(scene.face, camera, depth[:, :200])
     assert not cut.visible[cut.pixels[:, 0] > 200.0].any()
