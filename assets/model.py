@@ -50,6 +50,7 @@ class Segment(IntEnum):
     BOTTOM_LIP = 11
     NECK = 12
     HAIR = 13
+    FACIAL_HAIR = 14
     CLOTHING = 15
     GLASSES = 16
     FACE_WEAR = 18

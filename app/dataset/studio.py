@@ -150,6 +150,7 @@ class Studio:
             "sex": person.identity.sex.value,
             "age": round(person.identity.age, 1),
             "hair": person.identity.cut,
+            "beard": round(colours.features.beard_length, 1),
             "shirt": shirt,
             "collar": collar,
             "glasses": glasses,

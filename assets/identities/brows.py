@@ -206,6 +206,18 @@ def front_of_neck(size: int) -> Floats32:
     return np.asarray(front, np.float32)
 
 
+@lru_cache(maxsize=2)
+def trimmed_area(size: int) -> Floats32:
+    """Return where full beards grow, which are trimmed on the neck, 0 to 1, (size, size)."""
+    across = np.abs(np.linspace(-0.5, 0.5, size))
+    up = np.linspace(1.0, 0.0, size)[:, None]
+    # In the texture, the jaw rises from the chin to its angles.
+    jaw = 0.132 + 0.1 * (across / 0.264) ** 2
+    found = (smoothstep(up - jaw, -0.075, -0.02) * front_of_neck(size)).astype(np.float32)
+    found.flags.writeable = False
+    return found
+
+
 @lru_cache(maxsize=1)
 def shrunk_stubble(size: int, shrink: int) -> Floats32:
     """Average `stubble(size)` over blocks of `shrink` x `shrink` texels."""

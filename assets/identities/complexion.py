@@ -33,7 +33,7 @@ from ..oil import MAP_SIZE
 from ..pigments import BLOOD, SHAVED_HAIR, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
 from ..smooth import shrunk
 from .beards import beard_of
-from .brows import front_of_neck, painted, shrunk_stubble, soft_beard
+from .brows import painted, shrunk_stubble, soft_beard, trimmed_area
 from .eyes import beside_skin, with_irises
 from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
@@ -180,6 +180,9 @@ def _kept_hair(tints: _Tints, features: Features, shrink: int) -> Floats32:
     if features.stubble > 0.0:
         hairs = shrunk_stubble(shrink * len(kept), shrink)
         kept = np.maximum(kept, np.float32(features.stubble) * hairs * tints.beard)
+    if features.beard_length > 0.0:
+        shadowed = np.float32(0.6 * min(features.beard_length / 10.0, 1.0))  # between the hairs
+        kept = np.maximum(kept, shadowed * tints.beard * trimmed_area(len(kept)))
     return kept
 
 
@@ -222,7 +225,7 @@ def coloured(
         fine_shape=_own_shape(person) if shrink == 1 else known,
         wrinkles=_own_wrinkles(person, shrink),
         parts=_with_hair(person, parts, angle, features, behind, shrink),
-        segments=haired_segments(features, behind),
+        segments=haired_segments(features, behind, _tints_of_size().beard),
         in_tone=in_tone,
         stubble=np.float32(features.stubble) * _coarse_beard() if features.stubble else None,
     )
@@ -283,21 +286,13 @@ def _with_hair(
     light = _hair_light(angle, features)
     length = person.identity.hair
     colour = to_screen(LOCKS_LIGHTER * (light + features.grey * (GREY_LIGHT - light)))
-    if features.stubble > FAINTEST_BEARD and shrink == 1:  # small pictures do not show its hairs
-        skin = person.vertices, person.faces, uv
+    # Small pictures do not show the hairs of stubble.
+    if features.beard_length or (features.stubble > FAINTEST_BEARD and shrink == 1):
         colours = to_screen(np.stack([light, GREY_LIGHT]))
-        beard = beard_of(skin, features.stubble * _beard_of_texture(), colours, features.grey)
-        others.append(beard)
+        others.append(beard_of(person, _tints_of_size().beard, colours, features))
     if isinstance(cut, Fall):
         return (*others, *falling_hair(cut, scalp, person, colour, length))
     return (*others, *(tied_hair if cut.knot else hair_of)(cut, scalp, colour, length))
-
-
-@lru_cache(maxsize=1)
-def _beard_of_texture() -> Floats32:
-    """Return the density of a full beard in the front half of the texture, 0 to 1, (H, W)."""
-    beard = _tints_of_size().beard
-    return beard * front_of_neck(len(beard))
 
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:

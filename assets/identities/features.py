@@ -25,6 +25,7 @@ class Features:
     brows: None for the brows of the built-in head.
     lid_line: darkness of the edges of the lids, where lashes root, 0 to 1.
     stubble: fraction of the beard's area that stubble covers, 0 to 1.
+    beard_length: length of a full beard at the chin [mm]; 0: no full beard.
     beard: density of a beard's shadow, added to that of the built-in head.
     lips: density of blood in the lips, added to that of the built-in head.
     pale_lips: fraction of the skin's additional melanin that lips lack.
@@ -38,6 +39,7 @@ class Features:
     brows: Brows | None = None
     lid_line: float = 0.0
     stubble: float = 0.0
+    beard_length: float = 0.0
     beard: float = 0.0
     lips: float = 0.0
     pale_lips: float = 0.0
@@ -80,10 +82,12 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         fading = 1.0 - 0.006 * (years - 20.0)
         blood = fading * (0.48 + 0.2 * blood_chance)
     pale = 0.12 + 0.15 * pale_chance
+    stubble, length = _drawn_beard(hairs) if is_man else (0.0, 0.0)
     return Features(
         brows=brows,
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
-        stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
+        stubble=stubble,
+        beard_length=length,
         beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
         lips=blood,
         pale_lips=pale,
@@ -93,6 +97,22 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         hairline=hairline,
         iris=iris,
     )
+
+
+def _drawn_beard(chance: float) -> tuple[float, float]:
+    """Return the density of stubble, 0 to 0.9, and the length of a full beard [mm], 0 for none.
+
+    chance: random, 0 to 1. Of twenty men eleven are shaved, five have stubble, and four a full
+    beard, of 6 to 20 mm at the chin. These shares are assumed.
+    """
+    shaved_share, full_share = 0.55, 0.2
+    most_stubble = 0.9
+    past = chance - shaved_share
+    unshaven = 1.0 - shaved_share - full_share  # share of men with stubble
+    if past < unshaven:
+        return most_stubble * max(past, 0.0) / unshaven, 0.0
+    shortest, longest = 6.0, 20.0  # [mm]
+    return most_stubble, shortest + (longest - shortest) * (past - unshaven) / full_share
 
 
 def _fraction_of_grey(years: float, angle: float, early: float) -> float:

@@ -1,4 +1,4 @@
-"""Segments of the texture for a person: where brows and hair are on this person's skin."""
+"""Segments of the texture for a person: where brows, hair and beard are on this person's skin."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ from ...geometry.arrays import Floats32, Integers64
 from ..data_files import Image
 from ..loading import load
 from ..model import Segment
-from .brows import painted
+from .brows import painted, trimmed_area
 from .features import Features
 from .painted_hair import grown_over
 
 
-def haired_segments(features: Features, behind: Floats32) -> Image:
-    """Change the built-in head's segments, (H, W), to a person's brows and hairline."""
+def haired_segments(features: Features, behind: Floats32, beard: Floats32) -> Image:
+    """Change the built-in head's segments, (H, W), to a person's brows, hairline and full beard.
+
+    behind: distances behind the hairline [mm], (H, W). beard: where beards grow, 0 to 1, (H, W).
+    """
     found = load("head").segments.copy()
     texels = found.reshape(-1)
     haired = _texels_of(Segment.HAIR)
@@ -41,6 +44,10 @@ def haired_segments(features: Features, behind: Floats32) -> Image:
         least_cover = np.maximum(0.1, covered.max(axis=0) / 3.0)
         is_brow = (covered > least_cover) & (found[near] == Segment.SKIN)
         found[near] = np.where(is_brow, sides, found[near])
+    if features.beard_length:
+        least_density = 0.3  # of hairs that cover half of the skin, which are longer than apart
+        is_skin = (found == Segment.SKIN) | (found == Segment.NECK)
+        found[is_skin & (beard * trimmed_area(len(beard)) >= least_density)] = Segment.FACIAL_HAIR
     return found
 
 

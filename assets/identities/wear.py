@@ -20,6 +20,7 @@ from ...geometry.arrays import Floats64, Integers32
 from ..loading import load
 from ..model import GLASSES_NAME, Part
 from ..topology import quarter
+from .beards import BEARD_NAME, pressed_flat
 from .hair import HAIR_CUTS, HAIR_NAME, Fall
 from .hair_over_collar import over_collar
 from .mask import MASK_COLOURS, mask
@@ -82,6 +83,10 @@ def wearing(
     nose = None
     if cover is not None:
         sheet = mask(person, MASK_COLOURS[cover])
+        parts = [
+            pressed_flat(part, sheet.vertices) if part.name == BEARD_NAME else part
+            for part in parts
+        ]
         parts.append(sheet)
         nose = sheet.vertices.astype(np.float64)
     if frame is not None:

@@ -31,7 +31,8 @@ def test_every_texel_has_a_class(head):
     """Every texel has a class of skin: none is background, ignored, or clothing."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
-        Segment.BACKGROUND, Segment.CLOTHING, Segment.GLASSES, Segment.FACE_WEAR, Segment.IGNORE,
+        Segment.BACKGROUND, Segment.FACIAL_HAIR, Segment.CLOTHING, Segment.GLASSES,
+            Segment.FACE_WEAR, Segment.IGNORE,
     }  # fmt: skip
 
 
