@@ -20,10 +20,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.arrays import Flags, Floats64, Integers64, Unsigned8
+from ..geometry.numbering import numbered_by_first_use
 from .gltf_file import GltfFile, entry
 from .gltf_painter import GltfPainter
 from .pictures import MeshPictures
-from .topology import strip_triangles, unique_points
+from .topology import strip_triangles
 
 
 @dataclass(frozen=True)
@@ -355,7 +356,7 @@ def _first_of_same(stored: Floats64, motion: Floats64) -> Integers64:
     least_distance = 1e-3
     most_in_one_place = 16  # different motions of vertices; further ones stay apart
     for _ in range(most_in_one_place):
-        first, number = unique_points(stored[left] + 0.0)  # turns -0.0 into 0.0
+        first, number = numbered_by_first_use(stored[left] + 0.0)  # turns -0.0 into 0.0
         same[left] = left[first[number]]
         apart = abs(motion[left] - motion[same[left]]).max(axis=1)
         left = left[apart > least_distance]

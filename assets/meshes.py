@@ -19,12 +19,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned8
+from ..geometry.numbering import numbered_by_first_use
 from ..geometry.read_only import make_read_only
 from .errors import AssetError
 from .gltf import read_gltf
 from .pictures import MeshPictures, texture_of
 from .ply import read_ply
-from .topology import unique_points
 from .user_files import MOST_FILE_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
@@ -129,7 +129,7 @@ def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
     vertices, faces = _read_by_trimesh(content, suffix)
     if suffix == "stl":
         vertices = vertices + 0.0  # no zero with a sign
-        first, number = unique_points(vertices)
+        first, number = numbered_by_first_use(vertices)
         vertices = vertices[first]
         faces = number[faces]
     return Mesh(vertices, _numbers(faces))

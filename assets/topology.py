@@ -51,13 +51,6 @@ def boundary_loops(faces: Integers32) -> list[list[int]]:
     return sorted(loops, key=len, reverse=True)
 
 
-def unique_points(points: Floats64) -> tuple[Integers64, Integers64]:
-    """Distinct points of (n, 3), by first occurrence, and each point's index among these."""
-    _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    return first[order], np.argsort(order)[number.reshape(-1)]
-
-
 def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> Integers64:
     """The triangles of a strip (n,), shape (F, 3), without the degenerate ones that join parts."""
     if len(corners) < 3:

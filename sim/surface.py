@@ -21,6 +21,7 @@ from scipy.sparse import csgraph
 from ..geometry.arrays import Floats64, Integers32, Integers64
 from ..geometry.mesh_graph import path_to
 from ..geometry.normals import cross_products, vertex_areas, vertex_normals
+from ..geometry.sides import side_lengths
 from .skin_graph import SkinGraph, graph_of
 
 
@@ -120,8 +121,7 @@ def build_surface(positions: Floats64, faces: Integers32) -> SkinSurface:
     areas: Floats64 = np.maximum(vertex_areas(positions, faces), least_area)
 
     graph = graph_of(faces, count)
-    i, j = graph.edges.T
-    lengths = np.linalg.norm(positions[j] - positions[i], axis=1)
+    lengths = side_lengths(positions, graph.edges)
     # In mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2).
     least_length = 0.05
     lengths = np.maximum(lengths, least_length)

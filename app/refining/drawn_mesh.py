@@ -15,6 +15,7 @@ import numpy as np
 
 from risorius import refine, render
 from risorius.geometry.arrays import Floats64, Unsigned8
+from risorius.geometry.sides import side_lengths
 
 from ..scenes import Drawable
 from .plug_ins import PlugIn, plug_ins_of, reported
@@ -165,8 +166,7 @@ def _stream_for(
     room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
     if not (renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner)):
         return renderer.lend_stream(*room)
-    ends = scene.rest_positions[refiner.edges]
-    longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
+    longest = side_lengths(scene.rest_positions, refiner.edges).max(initial=0.0)
     return renderer.lend_gpu_stream(*room, margin=float(longest))
 
 

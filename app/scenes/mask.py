@@ -9,6 +9,7 @@ from risorius.assets.fitting.mouth_walls import stretched_walls
 from risorius.assets.identities.mask import MASK_SHAPE
 from risorius.assets.model import Part
 from risorius.geometry.arrays import Floats64
+from risorius.geometry.directions import unit_vectors
 from risorius.geometry.normals import vertex_normals
 
 from .bent_part import FaceNow, FacePart
@@ -28,8 +29,7 @@ class Mask(FacePart):
         # Smooth normals ignore the pleats.
         normals = vertex_normals(self._rest, part.faces)[:count].reshape(*MASK_SHAPE, 3)
         smooth = scipy.ndimage.gaussian_filter(normals, (4.0, 4.0, 0.0), mode="nearest")
-        smooth /= np.linalg.norm(smooth, axis=-1, keepdims=True)
-        self._outward = smooth.reshape(-1, 3)
+        self._outward = unit_vectors(smooth).reshape(-1, 3)
         self._near = scipy.spatial.cKDTree(skin).query(sheet, k=24)[1]
         self._resting_heights = self._heights(skin, sheet)
         # The inner side and the loops follow the sheet; the loops follow less near the ear.

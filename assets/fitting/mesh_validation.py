@@ -15,9 +15,10 @@ from scipy.sparse import csgraph
 
 from ...geometry.arrays import Flags, Floats64, Integers, Integers32, Integers64
 from ...geometry.mesh_graph import length_graph, path_lengths, path_to, pieces_of
+from ...geometry.numbering import numbered_by_first_use
 from ...geometry.sides import border_edges, different_pairs, numbered_edges, side_lengths, sides_of
 from ..errors import AssetError
-from ..topology import border_vertices, unique_points
+from ..topology import border_vertices
 
 MOST_FITTED_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # chosen; with fewer, eyes and mouth have no shape
@@ -107,7 +108,7 @@ def with_seams_joined(
     if (piece[landmarks] == piece[landmarks[0]]).all():
         return faces, landmarks
     border = border_vertices(faces)
-    first, number = unique_points(vertices[border] + 0.0)  # + 0.0 turns -0.0 into 0.0
+    first, number = numbered_by_first_use(vertices[border] + 0.0)  # + 0.0 turns -0.0 into 0.0
     same = np.arange(len(vertices), dtype=np.int32)
     same[border] = border[first[number]]
     joined = same[faces]

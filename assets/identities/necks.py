@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from ...geometry.arrays import Floats64
-from ...geometry.sides import edges_of
+from ...geometry.sides import edges_of, side_lengths
 from ...geometry.steps import smoothstep
 from ..loading import load
 
@@ -36,8 +36,9 @@ def _neck() -> tuple[scipy.sparse.csr_array, Floats64]:
     """
     head = load("head")
     x = head.vertices
-    first, second = edges_of(head.faces).T
-    near = 1.0 / np.linalg.norm(x[first] - x[second], axis=1)
+    edges = edges_of(head.faces)
+    first, second = edges.T
+    near = 1.0 / side_lengths(x, edges)
     rows = np.concatenate([first, second])
     columns = np.concatenate([second, first])
     weights = scipy.sparse.csr_array((np.tile(near, 2), (rows, columns)), (len(x), len(x)))

@@ -92,8 +92,7 @@ def _shirt_with_roll(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Clo
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
     axis = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
     inner = _off_neck(skin, upper, axis)
-    out = (inner - axis) * [1.0, 0.0, 1.0]
-    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    out = unit_vectors((inner - axis) * [1.0, 0.0, 1.0])
     # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]

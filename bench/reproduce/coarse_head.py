@@ -26,6 +26,7 @@ from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.coarse import coarse_head
 from risorius.geometry.arrays import Flags, Floats64
+from risorius.geometry.sides import side_lengths
 
 from ..canvas import CLAY_STYLE, Canvas, ComparedPicture, Drawing, image_table, parts_without_hair
 from ..subjects import SETTLING_FRAMES, fine_simulation, settled_positions
@@ -143,8 +144,7 @@ def _smoother(drawn: DrawnMesh, positions: Floats64) -> float:
 def _mean_angle(positions: Floats64, faces: npt.NDArray[np.integer]) -> float:
     """The mean angle between neighbouring triangles, weighted by the lengths of shared edges."""
     mesh = trimesh.Trimesh(positions, faces, process=False)
-    ends = positions[mesh.face_adjacency_edges]
-    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    lengths = side_lengths(positions, mesh.face_adjacency_edges)
     return float(np.average(mesh.face_adjacency_angles, weights=lengths))
 
 

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...geometry.arrays import Flags, Floats64, Integers32, Integers64, Unsigned32
+from ...geometry.numbering import numbered_by_first_use
 from .validation import checked_mesh, size_of, used_vertices
 
 SAME_PLACE = 1e-9
@@ -75,19 +76,6 @@ def find_seams(
     }
 
 
-def number_by_first_use(keys: Integers64) -> tuple[Integers64, Integers64]:
-    """Give equal keys the same number, in the order in which they first appear.
-
-    Returns the number of every key, and the place of the first use of every number. With this order
-    neighbours in the mesh are near each other in memory.
-    """
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    order = np.argsort(first, kind="stable")
-    rank = np.empty(len(order), dtype=np.int64)
-    rank[order] = np.arange(len(order))
-    return rank[inverse.reshape(-1)], first[order].astype(np.int64)
-
-
 def weld(
     positions: npt.ArrayLike, faces: npt.ArrayLike, *, tolerance: float | None = None
 ) -> tuple[Integers32, Integers32]:
@@ -118,7 +106,7 @@ def weld(
         distance = max(distance, last_bits)
     rows = len(points) + np.arange(len(points))
     rows[used] = number_places(points[used], distance)
-    number, first_uses = number_by_first_use(rows)
+    first_uses, number = numbered_by_first_use(rows)
     return first_uses.astype(np.int32), number[corners].astype(np.int32)
 
 
@@ -185,8 +173,8 @@ def _attribute_edges(
     end_uv = np.roll(corner_uv, -1, axis=1).ravel()
     uv_at_a = np.where(is_reversed, end_uv, start_uv)
     uv_at_b = np.where(is_reversed, start_uv, end_uv)
-    uv_pair, _ = number_by_first_use(uv_at_a * (corner_uv.max(initial=0) + 1) + uv_at_b)
-    number, first_uses = number_by_first_use(edge_of * (uv_pair.max(initial=0) + 1) + uv_pair)
+    _, uv_pair = numbered_by_first_use(uv_at_a * (corner_uv.max(initial=0) + 1) + uv_at_b)
+    first_uses, number = numbered_by_first_use(edge_of * (uv_pair.max(initial=0) + 1) + uv_pair)
     number, first_uses = _originals_first(number, first_uses, edge_of[first_uses], first)
     return (
         number,
@@ -200,7 +188,7 @@ def _wedges(
 ) -> tuple[Integers64, Integers64, Integers64]:
     """Wedge of each corner, vertex of each wedge, texture coordinate of each wedge."""
     vertices = faces.ravel()
-    number, first = number_by_first_use(
+    first, number = numbered_by_first_use(
         vertices * (corner_uv.max(initial=0) + 1) + corner_uv.ravel()
     )
     vertex_first = np.full(vertex_count, -1, dtype=np.int64)

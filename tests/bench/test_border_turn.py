@@ -11,6 +11,7 @@ from numpy.linalg import norm
 from risorius import refine
 from risorius.bench.reproduce.border_turn import BorderTurn
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.sides import side_lengths
 from tests import meshes
 from tests.refine.cases import as_lists, kahler, soups
 from tests.refine.plain_schemes import is_corner
@@ -116,8 +117,7 @@ def test_needs_are_continuous(seed, amplitude):
     shares = np.linspace(0.0, 1.0, 200)
     poses = [start + share * (end - start) for share in shares]
     edges = refine.connect(mesh.faces, len(start)).edges
-    lengths = [norm(np.diff(pose[edges], axis=1), axis=2) for pose in poses]
-    shortest = np.min(lengths)
+    shortest = min(side_lengths(pose, edges).min() for pose in poses)
     step = norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
     for before, after in pairwise(metrics_of(mesh, *poses)):
         assert np.abs(after - before).max() <= 200.0 * step + 1e-3

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import sim
+from risorius.geometry.sides import side_lengths
 from risorius.sim.substep import SEAL_AXES
 from tests.sim.poses import FRAME_TIME, both_sides, settled_displacement
 
@@ -139,7 +140,7 @@ def _energy(skin, state, grip):
     stored = (tissue.tangential + state.hold) * beside
     stored += (tissue.normal - tissue.tangential) * across**2
     i, j = edges.edges.T
-    longer = np.linalg.norm(state.x[j] - state.x[i], axis=1) - edges.rest_length
+    longer = side_lengths(state.x, edges.edges) - edges.rest_length
     beyond = np.maximum(longer - edges.strain_limit * edges.rest_length, 0.0)
     stretched = edges.stiffness * (longer**2 + (edges.stiffening - 1.0) * beyond**2)
     stretched += edges.shear * ((away[j] - away[i]) ** 2).sum(axis=1)

@@ -6,6 +6,7 @@ from numpy.linalg import norm
 
 from risorius import refine
 from risorius.geometry.directions import unit_vectors
+from risorius.geometry.sides import side_lengths
 from tests import meshes
 from tests.refine.cases import Forced, kahler, scheme_of
 
@@ -182,7 +183,7 @@ def test_displacement(scheme):
     ).refine(deformed)
     middles = full.positions[len(mesh.vertices) :]
     heights = norm(middles - deformed[edges].mean(axis=1), axis=1)
-    unit = norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    unit = side_lengths(mesh.vertices, edges).mean()
     once, twice = np.quantile(heights, [0.4, 0.8])
     heights = np.where(connectivity.around.is_interior, heights, 8.0 * heights)
     refiner = kahler(
