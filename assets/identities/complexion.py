@@ -46,6 +46,7 @@ from .painted_hair import MOST_COVER, fringe_of, grown_over, shrunk_strands
 from .person import Person
 from .population import DARKEST_TONE, LIGHTEST_TONE
 from .relief import with_reliefs
+from .spots import add_spots
 from .sternomastoid import sternomastoids_of
 
 GREY_HAIR = (0.54, 0.52, 0.49)  # sRGB
@@ -149,6 +150,7 @@ def recoloured(
         absorb(absorbed, first, left)
         np.exp(left, out=left)
         compose(left, first, tints.light, bare, tints.hair, shown, grown, _screen_bytes(), picture)
+    add_spots(picture, features.spots)
     return picture
 
 

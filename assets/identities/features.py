@@ -12,6 +12,7 @@ from .hair import is_tied
 from .hairline import NO_RECESSION_AGE, Hairline, drawn_hairline
 from .population import ONLY_BROWN
 from .space import Identity, Sex
+from .spots import Spot, drawn_spots
 
 # [mm]; tied hair showed the thin hair of its first 15 mm as a bare forehead. With this distance,
 # foreheads of women are 65.6 mm high in pictures with tied hair, 63.8 mm with loose hair.
@@ -34,6 +35,7 @@ class Features:
     grey: how grey the hair is, 0 to 1.
     hairline: shape of the hairline.
     iris: how the irises differ from the painted irises of the same colour.
+    spots: moles, freckles and age spots.
     """
 
     brows: Brows | None = None
@@ -48,6 +50,7 @@ class Features:
     grey: float = 0.0
     hairline: Hairline = field(default_factory=Hairline)
     iris: Iris = USUAL_IRIS
+    spots: tuple[Spot, ...] = ()
 
 
 PLAIN_FEATURES = Features()
@@ -96,6 +99,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         grey=_fraction_of_grey(years, angle, grey),
         hairline=hairline,
         iris=iris,
+        spots=drawn_spots(years, angle, random),
     )
 
 
