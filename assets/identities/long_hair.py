@@ -87,8 +87,8 @@ def falling_hair(
     bent = scipy.ndimage.gaussian_filter1d(sharp, bending_steps, axis=1, mode="nearest")
     bent[:, 0] = sharp[:, 0]  # roots stay
     along = _arc_lengths(bent)
-    smooth_length, loose_length = 30.0, 110.0  # [mm]; lengths from the roots, see `_layered_part`
-    loose = smoothstep(along, smooth_length, loose_length)
+    on_head = along[:, sample_count - 1 : sample_count]  # length of the part on the head [mm]
+    loose = smoothstep(along / on_head, 0.7, 1.1)  # edges over the forehead would throw shadows
     off = 88.0 * (angle - HAIR_EDGE_ANGLE)[:, None] - _edge_offsets(along, side) * loose
     dense = _densities(along, off, loose)
     tones = _lock_lightness(across) * colour
