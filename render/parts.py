@@ -11,7 +11,7 @@ from ..geometry.arrays import Floats32, Floats64, Integers32
 from ..geometry.colour import to_linear
 from ..geometry.directions import unit_vectors
 from ..geometry.normals import cross_products
-from ..geometry.sides import different_pairs
+from ..geometry.sides import edges_of
 from ..geometry.transforms import moved_points
 from .camera import PlacedView, box_corners
 from .frame import DrawnPart, PlacedPart
@@ -155,10 +155,7 @@ def _strand_breadths(faces: Integers32, vertex_count: int) -> Floats32:
 
     At a tip three triangles and three edges meet; at an open end four edges meet.
     """
-    following = np.roll(faces, -1, axis=1)
-    edges = np.stack([np.minimum(faces, following), np.maximum(faces, following)], axis=-1)
-    edges, _ = different_pairs(edges.reshape(-1, 2))
-    edge_counts = np.bincount(edges.ravel(), minlength=vertex_count)
+    edge_counts = np.bincount(edges_of(faces).ravel(), minlength=vertex_count)
     face_counts = np.bincount(faces.ravel(), minlength=vertex_count)
     is_tip = (edge_counts == 3) & (face_counts == 3)
     return np.where(is_tip, 0.0, 1.0)[:, None].astype(np.float32)

@@ -127,10 +127,12 @@ class MuscleForces:
             points = self.bundle.points[b]
             bone = self.bundle.mandible[b][:, None] * mandible.displacements(points)
             vertices, weight = held[b]
-            arc = arc_lengths(points)
-            away = np.abs(arc / max(arc[-1], 1e-9) - self.bundle.fixed_at[b])
-            fraction = (away / max(away.max(), 1e-9))[:, None] * (len(vertices) > 0)
-            moved = points + bone + fraction * (weight @ moved_skin[vertices] - bone)
+            moved = points + bone
+            if len(vertices):  # a line without skin follows its bone alone
+                arc = arc_lengths(points)
+                away = np.abs(arc / max(arc[-1], 1e-9) - self.bundle.fixed_at[b])
+                skin_share = (away / max(away.max(), 1e-9))[:, None]
+                moved += skin_share * (weight @ moved_skin[vertices] - bone)
             lines[self.names[muscle]].append(moved)
         return lines
 

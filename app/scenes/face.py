@@ -143,15 +143,16 @@ def _on_skin(part: HeadPart, rest_positions: Floats64, faces: Integers32) -> Hea
 
 def _images_of(head: assets.Head | FittedHead) -> SkinImages:
     """Return the images on the skin of a head."""
-    in_tone = head.in_tone if isinstance(head, Person) else None
     is_built_in = isinstance(head, assets.Head)
+    person = head if isinstance(head, Person) else None
+    in_tone = recoloured if is_built_in else None
     return SkinImages(
         uv=head.uv,
         face_uv=head.face_uv,
         albedo=head.albedo,
-        in_tone=recoloured if is_built_in else in_tone,
+        in_tone=person.in_tone if person else in_tone,
         ambient_occlusion=head.ambient_occlusion,
-        oil=assets.oil_of(head, head.stubble if isinstance(head, Person) else None),
+        oil=assets.oil_of(head, person.stubble if person else None),
         fine_shape=head.fine_shape,
         wrinkles=with_lids(head.wrinkles) if is_built_in and head.wrinkles else head.wrinkles,
         fade=head.fade() if isinstance(head, FittedHead) else None,
