@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..geometry.arrays import Floats64, Integers32, Integers64
-from ..geometry.sides import border_edges, different_pairs, numbered_edges, sides_of
+from ..geometry.sides import border_edges, border_sides, different_pairs, numbered_edges, sides_of
 
 Edge = tuple[int, int]
 
@@ -21,11 +21,9 @@ def boundary_loops(faces: Integers32) -> list[list[int]]:
     if len(sides) < len(number):
         first, second = sides[np.bincount(number).argmax()].tolist()
         raise ValueError(f"two faces run from vertex {first} to {second}")
-    edges, edge = different_pairs(np.sort(sides, axis=1))
-    is_border = np.bincount(edge) == 1
-    border_sides = sides[is_border[edge]]
-    remaining = {(first, second) for first, second in border_sides.tolist()}
-    at_border = np.isin(faces, edges[is_border]).any(axis=1)
+    border = border_sides(faces)
+    remaining = {(first, second) for first, second in border.tolist()}
+    at_border = np.isin(faces, border).any(axis=1)
     third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge there
     for a, b, c in faces[at_border].tolist():
         third[a, b] = c

@@ -19,7 +19,7 @@ import scipy
 from ...geometry.arrays import Floats32, Floats64, Integers32
 from ...geometry.mesh_graph import pieces_of
 from ...geometry.rays import exits
-from ...geometry.sides import sides_of
+from ...geometry.sides import border_sides
 from ...geometry.transforms import moved_points
 from ..model import Part
 from .warp import Similarity
@@ -131,12 +131,7 @@ def _closed_skin(fitted: FittedSkin, mouth: Similarity) -> tuple[Floats64, Integ
     skin = fitted.vertices
     faces = fitted.faces
     count = len(skin)
-    sides = sides_of(faces)
-    first, second = sides.T.astype(np.int64)
-    forward_keys = first * count + second
-    backward_keys = second * count + first
-    has_other = np.isin(forward_keys, backward_keys)
-    border = sides[~has_other]
+    border = border_sides(faces)
     group = pieces_of(border, count)[border[:, 0]]
     throat = mouth.points((0.0, -71.0, -10.0))  # 28 mm behind the throat
     widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of lids, lips

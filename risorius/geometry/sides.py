@@ -42,6 +42,13 @@ def border_edges(faces: Integers) -> Integers64:
     return found
 
 
+def border_sides(faces: Integers) -> Integers:
+    """Those of `sides_of` that no other triangle shares, shape (n, 2), in the same order."""
+    _, numbers = numbered_edges(faces)
+    found: Integers = sides_of(faces)[np.bincount(numbers)[numbers] == 1]
+    return found
+
+
 def side_lengths(vertices: Floats64, sides: Integers) -> Floats64:
     """The lengths (n,) of sides or edges (n, 2) between vertices (V, 3), in their unit."""
     along = vertices[sides[:, 1]] - vertices[sides[:, 0]]

@@ -4,6 +4,7 @@ import numpy as np
 
 from risorius.geometry.sides import (
     border_edges,
+    border_sides,
     different_pairs,
     edges_of,
     numbered_edges,
@@ -39,3 +40,4 @@ def test_edges_of_two_triangles():
     assert edges_of(faces).tolist() == edges.tolist()
     assert border_edges(faces).tolist() == [[0, 1], [0, 2], [1, 3], [2, 3]]
     assert border_edges(faces[:0]).shape == (0, 2)
+    assert border_sides(faces).tolist() == [[0, 1], [3, 2], [2, 0], [1, 3]]
