@@ -12,7 +12,7 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.eyeballs import is_eyeball, sphere_of
 from risorius.assets.fitting.mouth_walls import FittedSkin, opened_jaws
-from risorius.assets.fitting.organs import place_eyes, place_parts, with_eyelid_rims
+from risorius.assets.fitting.organs import RIM_ROWS, place_eyes, place_parts, with_eyelid_rims
 from risorius.assets.fitting.warp import ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
@@ -59,6 +59,36 @@ def _meets(points, triangles):
     of_b = flat_cross(to, v) / area
     of_c = flat_cross(u, to) / area
     return ((of_b >= -1e-6) & (of_c >= -1e-6) & (of_b + of_c <= 1.0 + 1e-6)).any(axis=1)
+
+
+def test_a_wide_opening_has_a_rim(fitted):
+    """An opening whose corner lies 1.9 radii from the eyeball gets a rim, not a hole."""
+    eye = fitted.eyes[0]
+    loops = boundary_loops(fitted.faces)
+    loop = min(loops, key=lambda loop: norm(fitted.vertices[loop] - eye.centre, axis=1).max())
+    corner = loop[np.abs(fitted.vertices[loop, 0]).argmax()]
+    wide = fitted.vertices + 0.0
+    wide[corner] = eye.centre + 1.9 * eye.radius * unit_vectors(wide[corner] - eye.centre)
+    parts = with_eyelid_rims(assets.load("head").parts, wide, fitted.faces, fitted.eyes)
+    flesh = next(part for part in parts if part.name == "eye_corners")
+    edge = flesh.vertices[norm(flesh.vertices - wide[corner], axis=1) < 1.0]
+    assert len(edge)
+
+
+@pytest.mark.parametrize(("gap", "has_lumps"), [(0.0, True), (2.5, False)])
+def test_flesh_that_no_lid_covers_is_left_out(fitted, gap, has_lumps):
+    """Where lids end 2.5 mm before the ball, the flesh in the corners would be two pink lumps."""
+    own = assets.load("head").parts
+    eyes = [replace(eye, radius=eye.radius - gap) for eye in fitted.eyes]
+    parts = with_eyelid_rims(own, fitted.vertices, fitted.faces, eyes)
+    flesh = next(part for part in parts if part.name == "eye_corners")
+    lumps = next(part for part in own if part.name == "eye_corners")
+    rims = 0
+    loops = boundary_loops(fitted.faces)
+    for eye in eyes:
+        edge = min(loops, key=lambda loop: norm(fitted.vertices[loop] - eye.centre, axis=1).max())
+        rims += 2 * (RIM_ROWS - 1) * len(edge)
+    assert len(flesh.faces) == rims + has_lumps * len(lumps.faces)
 
 
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
