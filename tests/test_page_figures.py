@@ -1,6 +1,7 @@
 """Numbers on pages equal the results of today's commands, within the page's tolerance."""
 
 import re
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -95,7 +96,7 @@ def test_code_that_reads_a_set(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT))
     succeeded("dataset", "--count", "4", "-o", "faces", "--size", "64x64", "--quiet")
     names = {}
-    exec(compile("\n".join(line[4:] for line in code[0].splitlines()), "page", "exec"), names)
+    exec(compile(textwrap.dedent(code[0]), "page", "exec"), names)
     sample = names["sample"]
     assert isinstance(sample, dict)
     assert sample["image"].shape == (3, 64, 64)

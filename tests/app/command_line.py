@@ -13,6 +13,11 @@ from click.testing import CliRunner, Result
 from risorius.__main__ import command
 
 
+def report_lines(text: str) -> dict[str, str]:
+    """The lines "name: words" of a report, by name."""
+    return dict(line.split(": ", 1) for line in text.splitlines() if ": " in line)
+
+
 def risorius(*arguments: object) -> Result:
     """Run the command in this process."""
     return CliRunner().invoke(command(), [str(argument) for argument in arguments])

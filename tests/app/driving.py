@@ -184,8 +184,10 @@ def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
     camera = viewer.face.view.camera
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
     clip = np.append(point, 1.0) @ matrix
-    x, y = clip[:2] / clip[3]
-    return on_screen(viewer, left + width * (0.5 + 0.5 * x), top + height * (0.5 - 0.5 * y))
+    x, y = clip[:2] / clip[3]  # -1 to 1, to the right and up
+    across = 0.5 + 0.5 * x
+    down = 0.5 - 0.5 * y
+    return on_screen(viewer, left + width * across, top + height * down)
 
 
 def drop(viewer: Viewer, *paths: Path) -> None:

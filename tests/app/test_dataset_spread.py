@@ -114,8 +114,10 @@ def test_the_reader_reads_both(loose, packed, kind):
     assert faces.files(3)["ldmks.txt"] == (loose / "000003_ldmks.txt").read_bytes()
     training, testing = faces.split(0.5)
     assert sorted(training + testing) == [*range(SAMPLE_COUNT)]
-    persons = [{faces.rows[k]["person_number"] for k in some} for some in (training, testing)]
-    assert persons[0].isdisjoint(persons[1])
+    person_of_sample = [row["person_number"] for row in faces.rows]
+    trained = {person_of_sample[number] for number in training}
+    tested = {person_of_sample[number] for number in testing}
+    assert trained.isdisjoint(tested)
 
 
 def test_the_example_of_the_page_reads_a_set(loose, tmp_path):
@@ -287,7 +289,8 @@ def test_a_cluster_loses_nothing_with_its_workers(packed, tmp_path):
             workers[0].kill()
             workers.append(joined(address))
             while len(workers) < 2 + KILL_COUNT and not is_made.wait(moments.uniform(8.0, 16.0)):
-                moments.choice([each for each in workers if each.poll() is None]).kill()
+                running = [worker for worker in workers if worker.poll() is None]
+                moments.choice(running).kill()
                 workers.append(joined(address))
 
         workers += [joined(address), joined(address)]

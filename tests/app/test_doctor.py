@@ -9,7 +9,7 @@ from risorius import render
 from risorius.__main__ import command
 from risorius.app.cli import doctor
 
-from .command_line import risorius
+from .command_line import report_lines, risorius
 
 
 @pytest.fixture
@@ -44,8 +44,7 @@ CHECKED_PARTS = ("offscreen", "window", "films")
 def test_every_command_is_said_to_work_or_not(machine_without):
     """Without a screen, all commands are reported to work except those of the window."""
     machine_without("window")
-    said = next(line for line in ask().output.splitlines() if line.startswith("commands: "))
-    able, _, unable = said.removeprefix("commands: ").partition(" work; ")
+    able, _, unable = report_lines(ask().output)["commands"].partition(" work; ")
     assert unable == "view, replay do not"
     assert set(able.split(", ")) == set(command().commands) - {"view", "replay", "doctor"}
     machine_without()
@@ -59,7 +58,7 @@ def test_the_verdict_agrees_with_the_parts(machine_without, missing):
     """For each missing part, its line, the summary and the exit code agree."""
     machine_without(*missing)
     result = ask()
-    lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
+    lines = report_lines(result.output)
     for part in CHECKED_PARTS:
         assert lines[part].startswith("no." if part in missing else "yes.")
     assert ("Everything is there." in result.output) == (not missing)

@@ -160,20 +160,22 @@ def test_the_file_is_as_validators_want_it(glb):
             attributes = primitive["attributes"]
             added = primitive.get("targets", [])
             positions |= {attributes["POSITION"], *(each["POSITION"] for each in added)}
-            counts = {parts["accessors"][n]["count"] for n in attributes.values()}
-            counts |= {parts["accessors"][n]["count"] for each in added for n in each.values()}
+            numbers = [number for rows in (attributes, *added) for number in rows.values()]
+            counts = {parts["accessors"][number]["count"] for number in numbers}
             assert len(counts) == 1
             indices = player.values(primitive["indices"])
             assert indices.max() == counts.pop() - 1 < 65535
             normals = player.values(attributes["NORMAL"])
             assert np.abs(norm(normals, axis=1) - 1.0).max() < 5e-4
             if "WEIGHTS_0" in attributes:
-                shares, joints = (player.values(attributes[n]) for n in ("WEIGHTS_0", "JOINTS_0"))
+                shares = player.values(attributes["WEIGHTS_0"])
+                joints = player.values(attributes["JOINTS_0"])
                 assert np.abs(shares.sum(axis=1) - 1.0).max() < 1e-6
                 assert shares.min() >= 0.0
                 assert joints.max() < 2
                 assert not joints[shares == 0.0].any()
-    for number in positions | {each["input"] for each in parts["animations"][0]["samplers"]}:
+    times = {sampler["input"] for sampler in parts["animations"][0]["samplers"]}
+    for number in positions | times:
         accessor = parts["accessors"][number]
         values = player.values(number)
         assert np.array_equal(np.float32(accessor["min"]), np.atleast_1d(values.min(axis=0)))

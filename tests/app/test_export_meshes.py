@@ -69,8 +69,8 @@ def refined_skins(clip):
 
 def is_near(found, wanted, unit=1.0):
     """Whether points equal the wanted ones in order; unit: metres per unit of the points."""
-    points = np.asarray(found, np.float64)
-    return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < TOLERANCE
+    points = np.asarray(found, np.float64) / unit
+    return points.shape == wanted.shape and np.abs(points - wanted).max() < TOLERANCE
 
 
 # ---------- USD ---------------------------------------------------------------------------------

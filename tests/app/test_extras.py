@@ -9,6 +9,8 @@ from pathlib import Path
 
 from risorius.app.cli.doctor import MODULES_OF_EXTRAS
 
+from .command_line import report_lines
+
 ROOT = Path(__file__).parents[2]
 MISSING_PROGRAM = f"""
 import sys
@@ -89,11 +91,10 @@ def test_the_doctor_lists_missing_extras(tmp_path):
     """
     ended = plain("doctor", folder=tmp_path)
     assert ended.returncode == 1, ended.stderr
-    lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
-    assert (
-        lines["extras"]
-        == f"none; for the others, in the checkout: pip install '.[{','.join(MODULES_OF_EXTRAS)}]'"
-    )
+    lines = report_lines(ended.stdout)
+    every = ",".join(MODULES_OF_EXTRAS)
+    remedy = f"for the others, in the checkout: pip install '.[{every}]'"
+    assert lines["extras"] == f"none; {remedy}"
     assert lines["window"].startswith("no. the window needs imgui-bundle; install it")
     assert lines["Missing"].startswith("window, films;")
 

@@ -81,7 +81,8 @@ def first_hits(points, faces, eye, ways):
             q = np.cross(eye - a, first)
             v = (q @ way) / determinant
             far = (second * q).sum(1) / determinant
-            is_hit = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (far > 0.0)
+            is_within = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+            is_hit = is_within & (far > 0.0)
         if is_hit.any():
             nearest = np.where(is_hit, far, np.inf).argmin()
             found[row] = nearest, far[nearest]
@@ -100,9 +101,11 @@ def test_triangles_and_depth_are_those_that_rays_hit(plain, yaw):
     ways = pixels @ np.linalg.inv(camera.intrinsics).T @ camera.rotation  # 1 mm along the axis
     eye = -camera.rotation.T @ camera.translation
     hits = first_hits(scene.positions, scene.faces, eye, ways)
-    is_same = hits[:, 0] == found["triangle"][*places.T]
+    triangle, depth = hits.T
+    is_same = triangle == found["triangle"][*places.T]
     assert is_same.mean() > 0.99
-    assert np.abs(hits[is_same, 1] - found["depth"][*places.T][is_same]).max() < 0.01
+    off = np.abs(depth - found["depth"][*places.T])
+    assert off[is_same].max() < 0.01
 
 
 def test_nothing_parts_and_skin_differ(studio):

@@ -108,9 +108,10 @@ def test_several_faces(tmp_path):
     """With several faces, the one in most rows is used, or the chosen one."""
     one = openface()
     other = openface(20)
-    rows = table(one).splitlines() + table(other | {"face_id": [3] * 20}).splitlines()[1:]
+    header, *rows = table(one).splitlines()
+    _, *more_rows = table(other | {"face_id": [3] * 20}).splitlines()
     path = tmp_path / "take.csv"
-    path.write_text("\n".join(rows))
+    path.write_text("\n".join([header, *rows, *more_rows]))
     take = read_take(path)
     assert len(take.times) == 60
     assert has_note(take.notes, "2 faces are in the file; '0'")

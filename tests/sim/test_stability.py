@@ -148,4 +148,5 @@ def _energy(skin, state, grip):
     apart[:, 1] -= lips.below * grip.overlap
     sealed = grip.stiffness * lips.seal * (apart**2 @ np.array(SEAL_AXES))
     kinetic = skin.mass[:, None] * state.v**2
-    return float(kinetic.sum() + stored.sum() + stretched.sum() + sealed.sum()) / 2.0
+    kinds = (kinetic, stored, stretched, sealed)
+    return sum(float(each.sum()) for each in kinds) / 2.0

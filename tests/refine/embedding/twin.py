@@ -125,7 +125,8 @@ class Twin:
                 if i != j:
                     near = self._tangent(points, axes, corners[i], corners[j]) / 3.0
                     nears += near
-                    place += 3.0 * shares[i] ** 2 * shares[j] * (points[corners[i]] + near)
+                    control_point = points[corners[i]] + near
+                    place += 3.0 * shares[i] ** 2 * shares[j] * control_point
         middle = points[corners].mean(axis=0) + 0.25 * nears
         return np.asarray(place + 6.0 * shares.prod() * middle)
 
