@@ -21,6 +21,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.sides import sides_of
 from tests.heads import user_head
+from tests.sim.poses import advance
 
 from .command_line import risorius
 
@@ -46,8 +47,7 @@ def posed(scene, **pose):
     """The face, one second after its pose was set."""
     scene.reset()
     scene.pose(pose)
-    for _ in range(60):
-        scene.step(1.0 / 60.0)
+    advance(scene, 60)
     return scene
 
 

@@ -18,6 +18,7 @@ from risorius.app.scenes import FaceScene, called_head
 from risorius.assets.topology import boundary_loops
 from risorius.geometry.rays import crossings
 from tests.app.command_line import refusal, risorius, succeeded
+from tests.sim.poses import advance
 
 STEPS = 40  # steps of 1/60 s until a pose is reached
 
@@ -32,8 +33,7 @@ def held(scene, **pose):
     """Positions [mm] of the vertices in a held pose, shape (V, 3)."""
     scene.reset()
     scene.pose(pose)
-    for _ in range(STEPS):
-        scene.step(1.0 / 60.0)
+    advance(scene, STEPS)
     return scene.positions.copy()
 
 

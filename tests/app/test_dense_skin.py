@@ -25,6 +25,7 @@ from risorius.geometry.normals import vertex_normals
 from risorius.geometry.sides import numbered_edges
 from risorius.refine import Embedding
 from tests.heads import sealed, user_head
+from tests.sim.poses import advance
 
 
 @pytest.fixture(scope="module")
@@ -83,8 +84,7 @@ def test_it_follows_and_comes_back(dense):
     dense.reset()
     twin = dense.clone()
     dense.pose({"joy": 1.0, "jaw_open": 0.5})
-    for _ in range(20):
-        dense.step(1.0 / 60.0)
+    advance(dense, 20)
     moved = norm(dense.positions - dense.rest_positions, axis=1)
     simulated = dense.simulation.positions - dense.simulation.rest_positions
     farthest = norm(simulated, axis=1).max()
@@ -111,8 +111,7 @@ def test_it_follows_when_it_is_read(dense, monkeypatch):
     dense.pose({"joy": 1.0})
     seen = dense.positions
     monkeypatch.setattr(Embedding, "evaluate", counted)
-    for _ in range(6):
-        dense.step(1.0 / 60.0)
+    advance(dense, 6)
     assert not moves
     assert dense.positions is seen
     assert dense.positions is seen
@@ -134,8 +133,7 @@ def test_its_simplified_mesh_is_a_head(dense, monkeypatch):
     for scene in (alone, dense):
         scene.reset()
         scene.pose({"joy": 1.0})
-        for _ in range(20):
-            scene.step(1.0 / 60.0)
+        advance(scene, 20)
     assert_allclose(alone.positions, dense.simulation.positions, atol=1e-9)
     skins = [scene.skin for scene in (alone, dense)]
     assert skins[0].albedo.shape[:2] == skins[0].ambient_occlusion.shape
@@ -153,8 +151,7 @@ def test_lips_keep_their_own_vertices(dense):
     """An open mouth parts the lips, so no vertex of one lip follows the other."""
     dense.reset()
     dense.pose({"jaw_open": 1.0})
-    for _ in range(30):
-        dense.step(1.0 / 60.0)
+    advance(dense, 30)
     marks = dense.landmarks
     upper = dense.positions[marks[62]] - dense.rest_positions[marks[62]]
     lower = dense.positions[marks[66]] - dense.rest_positions[marks[66]]
@@ -176,8 +173,7 @@ def test_lips_of_a_sealed_scan_part_without_strands(monkeypatch):
     scene = FaceScene(fit(cut.applied(mesh), cut.landmarks, points=cut.points))
     assert len(scene.simulation.faces) < len(scene.faces)
     scene.pose({"jaw_open": 1.0})
-    for _ in range(30):
-        scene.step(1.0 / 60.0)
+    advance(scene, 30)
     simulated = scene.simulation
     among = growth(simulated.faces, simulated.positions, simulated.rest_positions)
     assert growth(scene.faces, scene.positions, scene.rest_positions) < 1.2 * among

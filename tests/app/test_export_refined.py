@@ -20,6 +20,7 @@ from risorius.app.rig.surface import RefinedSurface
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
 from risorius.geometry.directions import unit_vectors
+from tests.sim.poses import advance
 
 from .glb_player import Player
 
@@ -146,8 +147,7 @@ def test_a_pose_that_is_held(look):
     held = "duration = 0.2\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
     scene = FaceScene()
     scene.pose({"joy": 1.0})
-    for _ in range(60):
-        scene.step(1.0 / 60.0)
+    advance(scene, 60)
     clip = record(parse_script(held, source="test"), scene, 10.0, progress=False)
     shapes = np.repeat(clip.skin.shapes[-1:], clip.frame_count, axis=0)
     still = replace(clip, surfaces=(replace(clip.skin, shapes=shapes), *clip.surfaces[1:]))

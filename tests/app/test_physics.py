@@ -6,6 +6,7 @@ import pytest
 from risorius.app.performances import script_for
 from risorius.app.viewer.session.physics import STEP_TIME, FrameTimes, Physics
 from risorius.app.viewer.session.session import Session
+from tests.sim.poses import advance
 
 
 @pytest.mark.parametrize("control", ["anger", "mentalis", "joy"])
@@ -20,7 +21,6 @@ def test_a_held_pose_comes_to_rest(face, control):
             break
     assert physics.is_at_rest
     rested = session.scene.positions.copy()
-    for _ in range(120):
-        session.scene.step(STEP_TIME)
+    advance(session.scene, 120, STEP_TIME)
     assert np.abs(session.scene.positions - rested).max() < 0.05  # no motion was left
     assert np.abs(rested - session.scene.rest_positions).max() > 1.0

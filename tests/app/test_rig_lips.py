@@ -11,6 +11,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import fit_head
 from risorius.assets.fitting.lips import lip_cut
 from risorius.assets.meshes import read_mesh
+from tests.sim.poses import advance
 
 from ..assets.gltf_files import GltfMaker
 from ..heads import METRES_PER_MILLIMETRE, UserHead, closed, masked, nearly_shut, sealed
@@ -106,8 +107,7 @@ def test_sealed_lips_are_cut_and_part(shut, tmp_path):
     assert np.array_equal(head.vertices[upper], head.vertices[lower])
     simulation = sim.create(head)
     simulation.controls.set("jawOpen", 1.0)
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 60)
     places = simulation.positions
     assert places[upper, 1] - places[lower, 1] > 15.0
     assert np.abs(places - head.vertices).max() < 60.0

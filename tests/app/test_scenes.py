@@ -20,6 +20,7 @@ from risorius.app.scenes import PlaneScene
 from risorius.app.script import Channel, Pose, Script
 from risorius.app.viewer.session.document import LiveOverride
 from risorius.app.viewer.session.session import Session
+from tests.sim.poses import advance
 
 from .recording_files import take_of
 
@@ -83,8 +84,7 @@ def test_a_long_step_is_divided(face):
     coarse = face.positions.copy()
     face.reset()
     face.pose({"joy": 1.0})
-    for _ in range(60):
-        face.step(1.0 / 60.0)
+    advance(face, 60)
     assert np.abs(coarse - face.positions).max() < 1e-9
 
 

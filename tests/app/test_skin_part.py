@@ -12,6 +12,7 @@ from risorius import assets
 from risorius.app.scenes.bent_part import FaceNow
 from risorius.app.scenes.skin_part import SkinPart
 from risorius.geometry.transforms import moved_points
+from tests.sim.poses import advance
 
 POSES = (
     {"AU43": 1.0},
@@ -73,8 +74,7 @@ def test_they_stay_on_lids_that_move(scene, pose):
     """Roots stay within a millimetre of the skin; lashes keep their length, outside the eye."""
     scene.reset()
     scene.pose({name: value for name, value in pose.items() if name in scene.limits})
-    for _ in range(40):
-        scene.step(1.0 / 60.0)
+    advance(scene, 40)
     made = {part.name: part for part in assets.load("head").parts}
     bones = scene.bone_transforms()
     corners = scene.positions[scene.faces]

@@ -25,6 +25,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.colour import to_screen
 from tests.assets.checks import part_of
 from tests.heads import person_of
+from tests.sim.poses import advance
 
 BEARDED = 91000180  # stubble of 0.8
 FULLY_BEARDED = 91000162  # a beard of 12 mm
@@ -67,8 +68,7 @@ def test_a_beard_follows_the_jaw(person):
     scene = FaceScene(person)
     rest = beard_of(scene).vertices.copy()
     scene.pose({"jawOpen": 1.0})
-    for _ in range(30):
-        scene.step(1.0 / 30.0)
+    advance(scene, 30, 1.0 / 30.0)
     moved = beard_of(scene).vertices
     assert np.linalg.norm(moved - rest, axis=1).max() > 15.0
     lengths = []
@@ -150,8 +150,7 @@ def test_a_full_beard_follows_the_jaw(full):
     scene = FaceScene(full)
     rest = beard_of(scene).vertices.copy()
     scene.pose({"jawOpen": 1.0})
-    for _ in range(30):
-        scene.step(1.0 / 30.0)
+    advance(scene, 30, 1.0 / 30.0)
     assert np.linalg.norm(beard_of(scene).vertices - rest, axis=1).max() > 15.0
     moved, _ = lengths_of(beard_of(scene))
     before, _ = lengths_of(beard_of(full))

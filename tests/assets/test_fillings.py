@@ -11,6 +11,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import fit_head
 from risorius.assets.fitting.fillings import filling_of
 from risorius.assets.meshes import read_mesh
+from tests.sim.poses import advance
 
 from ..heads import SHIFT_VECTOR, TURN_MATRIX, UserHead, closed, filled, masked, nearly_shut
 
@@ -52,8 +53,7 @@ def test_a_mask_is_opened_and_moves(mask, tmp_path):
     simulation = sim.create(head)
     simulation.controls.set("jawOpen", 1.0)
     simulation.controls.set("eyeBlinkLeft", 1.0)
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 60)
     moved = simulation.positions - head.vertices
     upper, lower = head.landmarks[[62, 66]]
     assert moved[upper, 1] - moved[lower, 1] > 15.0
@@ -96,8 +96,7 @@ def test_an_eye_that_is_part_of_the_skin_is_opened(mask, tmp_path):
     head = fit_head(*UserHead(covered, landmarks).write(tmp_path))
     simulation = sim.create(head)
     simulation.controls.set("eyeBlinkLeft", 1.0)
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 60)
     upper, lower = simulation.positions[head.landmarks[[[43, 44], [47, 46]]]]
     assert np.abs(upper - lower)[:, 1].max() < 2.0
 

@@ -22,6 +22,7 @@ from risorius.geometry.normals import cross_products, points_on_triangles, verte
 from tests.assets.checks import check_part, part_of
 from tests.heads import UserHead, shape
 from tests.meshes import ball, flat_cross
+from tests.sim.poses import advance
 
 EYE_DISTANCE = 25.0  # [mm] around an eye, for the eye's parts
 SIDES = 3  # samples along each edge of the rim
@@ -115,24 +116,31 @@ def test_the_flesh_of_the_eyes_is_well_formed(fitted):
         assert is_behind.sum() >= 20
 
 
+def skin_of(head):
+    """The skin of a head, as it is fitted to a mesh."""
+    normals = vertex_normals(head.vertices, head.faces)
+    landmarks = head.vertices[head.landmarks]
+    return FittedSkin(head.vertices, normals, head.faces, landmarks, head.mandible_weight)
+
+
+def with_points(skin, points, normals):
+    """The skin with more points (n, 3), which belong to no triangle, and their normals."""
+    return replace(
+        skin,
+        vertices=np.vstack([skin.vertices, points]),
+        normals=np.vstack([skin.normals, normals]),
+    )
+
+
 def test_the_wall_of_a_socket_moves_no_eye():
     """The wall of a socket narrower than its eyeball is not a lid, and does not push the ball."""
     head = assets.load("head")
-    normals = vertex_normals(head.vertices, head.faces)
-    points = head.vertices[head.landmarks]
-    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight)
-    walls = []
-    inward = []
+    skin = skin_of(head)
+    narrow = skin
     for eye in head.eyes:
-        away = head.vertices[head.rings[f"eye_2_{eye.name}"]] - eye.centre
-        away = unit_vectors(away)
-        walls.append(eye.centre + (eye.radius - 2.0) * away)
-        inward.append(-away)
-    narrow = replace(
-        skin,
-        vertices=np.vstack([head.vertices, *walls]),
-        normals=np.vstack([normals, *inward]),
-    )
+        outward = unit_vectors(head.vertices[head.rings[f"eye_2_{eye.name}"]] - eye.centre)
+        wall = eye.centre + (eye.radius - 2.0) * outward
+        narrow = with_points(narrow, wall, -outward)
     for eye, other in zip(place_eyes(head, skin), place_eyes(head, narrow), strict=True):
         assert norm(eye.centre - other.centre) < 0.1
         assert abs(eye.radius - other.radius) < 0.1
@@ -215,7 +223,6 @@ def test_a_ball_of_the_file_does_not_pierce_a_corner_of_the_lids():
     """A ball that reaches half a millimetre out of a corner of its eye shrinks."""
     head = assets.load("head")
     points = head.vertices[head.landmarks]
-    normals = vertex_normals(head.vertices, head.faces)
     corners = [points[36:42], points[42:48]]
     nearest = [
         norm(lids - eye.centre, axis=1).min() for lids, eye in zip(corners, head.eyes, strict=True)
@@ -223,8 +230,8 @@ def test_a_ball_of_the_file_does_not_pierce_a_corner_of_the_lids():
     own = tuple(
         _ball(eye.centre, reach + 0.5)[0] for eye, reach in zip(head.eyes, nearest, strict=True)
     )
-    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight, own)
-    for eye, lids in zip(place_eyes(head, skin), corners, strict=True):
+    eyes = place_eyes(head, replace(skin_of(head), pieces=own))
+    for eye, lids in zip(eyes, corners, strict=True):
         reach = norm(lids - eye.centre, axis=1).min()
         assert reach - 0.5 < eye.radius < reach
 
@@ -233,9 +240,8 @@ def test_an_iris_is_smaller_than_its_ball():
     """An eyeball that is small for its face still leaves visible corners."""
     head = assets.load("head")
     points = head.vertices[head.landmarks]
-    normals = vertex_normals(head.vertices, head.faces)
     own = tuple(_ball(eye.centre, 0.65 * eye.radius)[0] for eye in head.eyes)
-    skin = FittedSkin(head.vertices, normals, head.faces, points, head.mandible_weight, own)
+    skin = replace(skin_of(head), pieces=own)
     wide = tuple(replace(eye, iris_radius=0.9 * eye.radius) for eye in head.eyes)
     known = replace(head, eyes=wide)
     warp = ThinPlateSpline(points, points)
@@ -250,18 +256,13 @@ def test_an_iris_is_smaller_than_its_ball():
 def test_a_closed_socket_is_the_shell_of_its_ball():
     """A closed socket's skin gives the size of the eyeball, which touches the lids from behind."""
     head = assets.load("head")
-    normals = vertex_normals(head.vertices, head.faces)
     points = head.vertices[head.landmarks]
     unit = ball(3).vertices
     unit = unit[unit[:, 2] < 0.5]
-    shells = [eye.centre + [0.0, 0.0, -3.0] + 15.5 * unit for eye in head.eyes]
-    skin = FittedSkin(
-        np.vstack([head.vertices, *shells]),
-        np.vstack([normals, *[-unit] * 2]),
-        head.faces,
-        points,
-        head.mandible_weight,
-    )
+    skin = skin_of(head)
+    for eye in head.eyes:
+        shell = eye.centre + [0.0, 0.0, -3.0] + 15.5 * unit
+        skin = with_points(skin, shell, -unit)
     for eye, new in zip(head.eyes, place_eyes(head, skin), strict=True):
         assert 14.8 < new.radius < 15.5
         assert norm((new.centre - eye.centre)[:2]) < 0.3
@@ -285,8 +286,7 @@ def sleeper() -> FittedHead:
     head = assets.load("head")
     simulation = sim.create(head)
     simulation.controls.set("blink", 1.0)
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 60)
     return fit(Mesh(shape(simulation.positions), head.faces), head.landmarks)
 
 
@@ -306,8 +306,7 @@ def test_lids_of_shut_eyes_hardly_move(sleeper, name):
     before = simulation.positions.copy()
     for side in ("Left", "Right"):
         simulation.controls.set(f"{name}{side}", 1.0)
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 60)
     assert norm(simulation.positions - before, axis=1).max() < 2.0
     for eye in sleeper.eyes:
         grid = eye.radius * np.linspace(-0.7, 0.7, 15)

@@ -30,7 +30,7 @@ from risorius.geometry.directions import unit_vectors
 from risorius.geometry.intersections import self_intersections
 from tests.assets.checks import mirror_error
 from tests.heads import person_of
-from tests.sim.poses import inverted_triangles
+from tests.sim.poses import advance, inverted_triangles
 
 SEEDS = st.integers(0, 2**32 - 1)
 PERSONS = (0, 1039)
@@ -294,8 +294,7 @@ def test_expressions_work_on_persons(person, head, request):
     """A person is still at rest, with closed lips; expressions move it as they move the head."""
     simulation = sim.create(person)
     usual = sim.create(head)
-    for _ in range(30):
-        simulation.step(1.0 / 60.0)
+    advance(simulation, 30)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
     landmarks = simulation.positions[person.landmarks]
     assert widest_slit(simulation.positions, simulation.faces, landmarks) < 0.15
@@ -304,8 +303,7 @@ def test_expressions_work_on_persons(person, head, request):
         for each in (simulation, usual):
             each.reset()
             each.controls.pose({pose: 1.0})
-            for _ in range(60):
-                each.step(1.0 / 60.0)
+            advance(each, 60)
             moved.append(norm(each.positions - each.rest_positions, axis=1).max())
         assert np.isfinite(simulation.positions).all()
         assert share < moved[0] / moved[1] < 1.0 / share, pose

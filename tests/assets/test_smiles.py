@@ -8,6 +8,7 @@ from risorius import sim
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.identities.smiles import USUAL_SMILE, Smile, smiling
 from risorius.assets.loading import load
+from tests.sim.poses import advance
 
 
 def test_smiles_change_two_rows_within_their_limits():
@@ -45,8 +46,7 @@ def test_a_lifted_smile_bares_more_teeth_and_a_shut_one_stays_shut():
         for name, found in (("AU12", slits), ("joy", heights)):
             simulation.reset()
             simulation.controls.set(name, 1.0)
-            for _ in range(20):
-                simulation.step(0.05)
+            advance(simulation, 20, 0.05)
             upper, lower = simulation.positions[lips, 1]
             found.append(upper if name == "joy" else upper - lower)
             simulation.controls.set(name, 0.0)

@@ -14,6 +14,7 @@ from risorius.geometry.arrays import Floats64
 from risorius.refine_gl import KahlerGl
 from tests import meshes
 from tests.refine.cases import edge_count_of
+from tests.sim.poses import advance
 
 from .agreement import LOOK_OPTIONS, RULES, assert_same, bound_twice
 
@@ -33,8 +34,7 @@ def poses(head: Head) -> dict[str, Floats64]:
         face.reset()
         if name != "rest":
             face.controls.set(name, 1.0)
-        for _ in range(60):
-            face.step(1 / 60)
+        advance(face, 60)
         found[name] = face.positions.copy()
     found["kiss far away"] = found["kiss"] @ meshes.rotation(3).T + FAR_OFFSET
     return found

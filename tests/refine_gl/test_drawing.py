@@ -18,6 +18,7 @@ from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.refine_gl import LEAST_VERSION, KahlerGl
 from tests.app.command_line import succeeded
+from tests.sim.poses import advance
 
 from .agreement import needs_exact_driver
 
@@ -39,8 +40,7 @@ def scene() -> FaceScene:
     """A laughing face."""
     scene = FaceScene()
     scene.pose({"joy": 1.0})
-    for _ in range(30):
-        scene.step(1 / 30)
+    advance(scene, 30, 1 / 30)
     return scene
 
 

@@ -23,14 +23,19 @@ def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[
     }
 
 
+def advance(moving: Any, frames: int, step: float = FRAME_TIME) -> None:
+    """Let a scene or a simulation move for some frames; step: time of a frame [s]."""
+    for _ in range(frames):
+        moving.step(step)
+
+
 def settled_displacement(
     simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60
 ) -> Floats64:
     """Pose the face from rest, wait, and return its displacements [mm], shape (V, 3)."""
     simulation.reset()
     simulation.controls.set_all(values)
-    for _ in range(frames):
-        simulation.step(FRAME_TIME)
+    advance(simulation, frames)
     moved: Floats64 = simulation.positions - simulation.rest_positions
     return moved
 

@@ -8,7 +8,14 @@ import trimesh
 
 from risorius import sim
 from tests.meshes import open_grid
-from tests.sim.poses import FRAME_TIME, both_sides, moved_landmarks, settled_displacement, without
+from tests.sim.poses import (
+    FRAME_TIME,
+    advance,
+    both_sides,
+    moved_landmarks,
+    settled_displacement,
+    without,
+)
 
 
 def _grid():
@@ -52,8 +59,7 @@ def test_any_mesh_is_stable_and_comes_back(mesh, generator):
     simulation.touch.kick(generator.normal(scale=2.0 * size, size=simulation.positions.shape))
     simulation.step(1 / 20)
     assert 1e-4 * size < np.abs(simulation.positions - simulation.rest_positions).max() < 2.0 * size
-    for _ in range(120):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 120)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-4 * size
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.linalg import norm
 
 from risorius.geometry.directions import unit_vectors
-from tests.sim.poses import FRAME_TIME, settled_displacement
+from tests.sim.poses import advance, settled_displacement
 
 
 def test_fibres_shorten(simulation):
@@ -61,8 +61,7 @@ def test_a_corner_of_the_mouth_shows_a_muscle_of_its_side(simulation, head, corn
     """Rings of the other side also pass there, also where the head is turned."""
     for yaw in (0.0, 1.0):
         simulation.controls.set("head_yaw", yaw)
-        for _ in range(30):
-            simulation.step(FRAME_TIME)
+        advance(simulation, 30)
         place = simulation.positions[head.landmarks[corner]]
         assert simulation.anatomy.muscle_at(place, 14.0).endswith(side)
 

@@ -8,7 +8,7 @@ from numpy.linalg import norm
 from pytest import approx
 
 from risorius import sim
-from tests.sim.poses import FRAME_TIME
+from tests.sim.poses import advance
 
 FINGER_REACH = 16.0  # [mm]
 RIGHT_CORNER = 48
@@ -53,8 +53,7 @@ def values_of(pull):
 def settled(face, values):
     """The places of the skin after these controls have settled."""
     face.controls.set_all(values)
-    for _ in range(60):
-        face.step(FRAME_TIME)
+    advance(face, 60)
     return face.positions.copy()
 
 
@@ -261,8 +260,7 @@ def test_the_motion_of_a_muscle_ignores_the_pose(simulation, head):
     """The motion is that of a smile at rest, although the face shows a kiss; the face stays."""
     expected = sim.motion_of(simulation, "zygomaticus_major_left")
     simulation.controls.set("orbicularis_oris_sphincter", 1.0)
-    for _ in range(20):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 20)
     before = simulation.positions.copy()
     found = sim.motion_of(simulation, "zygomaticus_major_left")
     assert (simulation.positions == before).all()

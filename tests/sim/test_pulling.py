@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.linalg import norm
 
-from tests.sim.poses import FRAME_TIME
+from tests.sim.poses import advance
 
 
 def cheek(simulation):
@@ -23,29 +23,25 @@ def test_skin_follows_the_pointer_and_swings_back(simulation):
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
     simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))
-    for _ in range(60):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 60)
     moved = simulation.positions - simulation.rest_positions
     assert moved[grabbed, 0].min() > 12.0
     others = np.setdiff1d(np.arange(len(moved)), grabbed)
     assert 2.0 < np.abs(moved[others]).max() < 20.0
     simulation.touch.end_drag()
-    for _ in range(120):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 120)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
 
 
 def test_skin_of_a_turned_head_follows_the_pointer(simulation):
     """On a turned head, skin still follows the pointer."""
     simulation.controls.set("head_yaw", 1.0)
-    for _ in range(90):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 90)
     before = simulation.positions.copy()
     grabbed = cheek(simulation)
     offset = np.array([10.0, 12.0, 0.0])
     simulation.touch.drag(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
-    for _ in range(60):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 60)
     moved = (simulation.positions - before)[grabbed].mean(axis=0)
     assert moved @ offset > 0.9 * norm(moved) * norm(offset)
     assert norm(moved) > 0.6 * norm(offset)

@@ -8,13 +8,12 @@ import pytest
 from risorius import sim
 from risorius.geometry.sides import side_lengths
 from risorius.sim.substep import SEAL_AXES
-from tests.sim.poses import FRAME_TIME, both_sides, settled_displacement
+from tests.sim.poses import FRAME_TIME, advance, both_sides, settled_displacement
 
 
 def test_rest_stays_at_rest(simulation, model, state):
     """In two seconds without input, nothing moves by a millionth of a millimetre."""
-    for _ in range(120):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 120)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
     assert _energy(model.skin, state, simulation.grip) < 1e-9
 
@@ -75,8 +74,7 @@ def test_everything_at_once_on_and_off(simulation):
     for beat in range(20):
         level = float(beat % 2)
         simulation.controls.set_all({name: level for name in simulation.controls.lowest})
-        for _ in range(6):
-            simulation.step(FRAME_TIME)
+        advance(simulation, 6)
         assert np.abs(_moved(simulation)).max() < 90.0
 
 

@@ -3,6 +3,7 @@
 from numpy.linalg import norm
 
 from risorius.sim import Simulation
+from tests.sim.poses import advance
 
 FRAME_TIME = 1.0 / 60.0
 
@@ -19,8 +20,7 @@ def test_a_face_that_rests_places_no_targets(simulation, monkeypatch):
     simulation.controls.set("jaw_open", 0.5)
     simulation.step(FRAME_TIME)
     assert len(placed) == 1
-    for _ in range(90):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 90)
     count = len(placed)
     simulation.step(FRAME_TIME)
     assert len(placed) == count < 80
@@ -36,7 +36,6 @@ def test_a_resting_face_follows_the_pointer(simulation):
     simulation.step(FRAME_TIME)
     drawn = norm(simulation.positions - rest, axis=1).max()
     simulation.touch.end_drag()
-    for _ in range(60):
-        simulation.step(FRAME_TIME)
+    advance(simulation, 60)
     assert drawn > 0.2
     assert norm(simulation.positions - rest, axis=1).max() < 0.1 * drawn
