@@ -260,14 +260,14 @@ def fit(mesh: Mesh, landmarks: Integers32, *, points: Floats64 | None = None) ->
 class _Jaw(NamedTuple):
     """The axis of a head's jaw, and the rig with the angle by which the jaw opens."""
 
-    axis: Floats64 | None  # (2, 3) [mm]; None for a head without ears
+    axis: Floats64  # (2, 3) [mm]
     rig: dict[str, Any]
 
 
 def _jaw_of(known: Head, skin: SkinPiece, target: Floats64) -> _Jaw:
     """Find the jaw of a skin [mm] with the landmarks `target`, (68, 3) [mm]."""
     axis = jaw_axis_of(skin.vertices, skin.faces, target)
-    return _Jaw(axis, known.rig if axis is None else with_human_opening(known.rig, axis, target))
+    return _Jaw(axis, with_human_opening(known.rig, axis, target))
 
 
 def _beside_skin(vertices: Floats64, faces: Integers32, skin: SkinPiece) -> list[Floats64]:
@@ -300,8 +300,7 @@ def _carried_over(
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight, pieces)
     eyes = place_eyes(known, fitted)
-    axis = warp.points(known.jaw_axis) if jaw.axis is None else jaw.axis
-    parts = place_parts(known, fitted, warp, eyes, opened_jaws(axis, jaw.rig))
+    parts = place_parts(known, fitted, warp, eyes, opened_jaws(jaw.axis, jaw.rig))
     neck_part = "neck"  # bone of the built-in shirt, which fits no other shoulders
     return _Carried(
         eyes=eyes,

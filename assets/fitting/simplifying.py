@@ -27,8 +27,7 @@ class SimulatedHead:
     """A mesh with all data for `sim.create`; it has the attributes of `Head`.
 
     uv: texture coordinates in the built-in texture, (V, 2).
-    jaw_axis: condyles [mm], (2, 3); None if no ear was found. Then `sim.create` guesses the axis
-        from the landmarks.
+    jaw_axis: condyles [mm], (2, 3); with None, `sim.create` guesses them from the landmarks.
     """
 
     vertices: Floats64
