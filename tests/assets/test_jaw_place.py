@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 
 from risorius.assets.fitting.jaw_place import jaw_axis_of, with_human_opening
-from risorius.sim.foundation import foundation_of
-from risorius.sim.skull import condyles_from_landmarks
-from tests.sim.poses import without
 
 
 def found_axis(head, size):
@@ -35,15 +32,6 @@ def test_without_ears_landmarks_give_the_axis(head):
     faces = head.faces[is_front[head.faces].all(axis=1)]
     axis = jaw_axis_of(head.vertices, faces, head.vertices[head.landmarks])
     assert np.abs(axis - head.jaw_axis).max() < 8.0
-
-
-def test_a_head_without_an_axis_gets_it_from_its_landmarks(head):
-    """The simulation's own guess is near the true condyles, or the mouth would open 57 mm."""
-    foundation = foundation_of(without(head, "jaw_axis"))
-    space = foundation.space
-    landmarks = space.to_standard(head.vertices[head.landmarks])
-    condyles = condyles_from_landmarks(landmarks, foundation.rig.jaw)
-    assert np.abs(condyles - space.to_standard(head.jaw_axis)).max() < 8.0
 
 
 def test_the_opening_grows_with_the_mandible(head):
