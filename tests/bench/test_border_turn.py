@@ -13,7 +13,7 @@ from risorius.bench.reproduce.border_turn import BorderTurn
 from risorius.geometry.directions import unit_vectors
 from risorius.geometry.sides import side_lengths
 from tests import meshes
-from tests.refine.cases import as_lists, kahler, soups
+from tests.refine.cases import as_lists, kahler, sound_frame, soups
 from tests.refine.plain_schemes import is_corner
 from tests.refine.plain_twin import Surroundings
 
@@ -26,7 +26,7 @@ EDGES = refine.connect(SLIT.faces, len(SLIT.vertices)).edges
 def splits_of(mesh, deformed, criterion=None):
     """Splits of every edge."""
     refiner = kahler(mesh, criterion=BorderTurn() if criterion is None else criterion)
-    refine.check(refiner, refiner.refine(deformed), deformed)
+    sound_frame(refiner, deformed)
     return refiner.splits.copy()
 
 

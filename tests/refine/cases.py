@@ -41,6 +41,13 @@ def scheme_of(
     return refine.DetailScheme((finer_positions, finer_faces)) if name == "detail" else name
 
 
+def sound_frame(refiner: refine.Refiner, positions: Floats64) -> refine.RefinedMesh:
+    """Refine a frame, check that it is sound, and return it."""
+    refined = refiner.refine(positions)
+    refine.check(refiner, refined, positions)
+    return refined
+
+
 class GivenMetric(refine.Criterion):
     """A criterion that measures the given values."""
 

@@ -51,6 +51,11 @@ def square(half: float = 50.0, *, z: float = 0.0, bulge: float = 0.0) -> Shape:
     return Shape(positions, normals, np.array([(0, 1, 2), (0, 2, 3)], np.uint32))
 
 
+def turned_over(shape: Shape) -> Shape:
+    """The shape with its inner side outside."""
+    return Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+
+
 def joined(first: Shape, second: Shape) -> Shape:
     """Both shapes as one mesh."""
     return Shape(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import render
+from tests.render.scenes import turned_over
 
 from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
 
@@ -60,7 +61,7 @@ def test_terminator_of_skin_is_warm(surface):
 def test_inner_side_is_dark_flesh(surface):
     """From behind, a surface is much darker, and red."""
     shape = square()
-    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    turned = turned_over(shape)
     for style in (FLAT_STYLE, GOURAUD_STYLE, PLAIN_STYLE):
         front = at(draw_image(surface, shape, style), 5.0, 5.0)
         behind = at(draw_image(surface, turned, style), 5.0, 5.0)
@@ -101,7 +102,7 @@ def test_skin_fades_as_its_vertices_have_it(renderer, wireframe):
 def test_the_inside_of_a_faded_neck_does_not_show(renderer):
     """Back faces with a number below 0 are hidden, those of lips and lids are visible."""
     shape = square(30.0)
-    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    turned = turned_over(shape)
     for inner, is_seen in ((0.5, True), (-0.5, False)):
         skin = fading(renderer, turned, (0.25, 1.75, 1.75, 0.25), inner)  # half of it is opaque
         assert (draw(renderer, skin)[48, 60].mean() < 250.0) == is_seen
@@ -128,7 +129,7 @@ def test_the_inside_of_cheeks_is_dark_behind_the_lips(renderer, shading):
     Beside the mouth, and where lips are seen from behind, back faces keep their light.
     """
     shape = square(30.0)
-    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    turned = turned_over(shape)
     style = replace(PLAIN_STYLE, shading=shading)
     skin = render.Skin(lent(renderer, turned))
     lit = draw(renderer, skin, style)
@@ -145,7 +146,7 @@ def test_the_inside_of_a_faded_neck_shows_through_the_lips(renderer, turn):
     Beside it they are hidden.
     """
     shape = square(30.0)
-    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    turned = turned_over(shape)
     skin = fading(renderer, turned, (1.75, 1.75, 1.75, 1.75), -0.5)
     image = draw(renderer, replace(skin, mouth=round_rim(turn)))
     assert (image[48, 48].mean() < 250.0) == (turn == 1)

@@ -15,8 +15,9 @@ from risorius.render.texture import (
     _lit_texels,
     _square_roots,
 )
+from tests.render.scenes import turned_over
 
-from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN_STYLE, at, draw, draw_image, lent, sphere, square
 
 
 def textured(
@@ -210,7 +211,7 @@ def test_skin_between_dark_hairs_shines_like_bare_skin(surface):
 def test_back_faces_keep_the_inner_albedo(surface):
     """The texture lies on the outside only; back faces have the inner albedo."""
     shape = square()
-    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    turned = turned_over(shape)
     blue = textured(surface, plain_image((0, 0, 255)), shape=turned)
     assert (blue == draw_image(surface, turned))[20:76, 20:76].all()
 

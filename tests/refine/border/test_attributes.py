@@ -8,7 +8,14 @@ import pytest
 from risorius import refine
 from risorius.refine.border.corner_values import _different_rows
 from tests import meshes
-from tests.refine.cases import GivenMetric, edge_count_of, kahler, places_in_source, scheme_of
+from tests.refine.cases import (
+    GivenMetric,
+    edge_count_of,
+    kahler,
+    places_in_source,
+    scheme_of,
+    sound_frame,
+)
 
 REFINERS = [
     ("none", {}),
@@ -38,8 +45,7 @@ def test_attributes_are_linear(name, options):
         attributes={"colour": colours, "part": (parts, corner_rows)},
         **options,
     )
-    refined = refiner.refine(deformed)
-    refine.check(refiner, refined, deformed)
+    refined = sound_frame(refiner, deformed)
     assert refiner.vertex_columns == 6 + 2 + 4 + 1
     assert refined.uv is not None
     places = places_in_source(refiner.origins(), refined.triangles, tube.faces[refined.source])
@@ -89,16 +95,14 @@ def test_own_stream_grows(blend):
     unsplit = room(refiner.refine(mesh.vertices))
     assert unsplit < 1.5 * (24 * len(mesh.vertices) + 16 * len(mesh.faces))
     needed.metric[:] = 2.0
-    all_split = refiner.refine(mesh.vertices)
-    refine.check(refiner, all_split, mesh.vertices)
+    all_split = sound_frame(refiner, mesh.vertices)
     assert len(all_split.triangles) == refiner.triangle_capacity
     most = room(all_split)
     assert most > 5 * unsplit
     rows = all_split.positions.base
     assert rows is not None and len(rows) == refiner.vertex_capacity  # no unused room
     needed.metric[:] = -1.0
-    none_split = refiner.refine(mesh.vertices)
-    refine.check(refiner, none_split, mesh.vertices)
+    none_split = sound_frame(refiner, mesh.vertices)
     assert room(none_split) == most
 
 

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from risorius import refine
 from risorius.refine.kahler.smoothing import LoopScheme
 from tests import meshes
-from tests.refine.cases import kahler
+from tests.refine.cases import kahler, sound_frame
 
 GOOD_MESH = meshes.octahedron()
 
@@ -61,10 +61,10 @@ def test_registered_refiner():
     assert "outside" in refine.refiners.available()
     refiner = refine.create("outside", GOOD_MESH.faces, GOOD_MESH.vertices, offset=0.0)
     assert isinstance(refiner, refine.Refiner)
-    refine.check(refiner, refiner.refine(GOOD_MESH.vertices), GOOD_MESH.vertices)
+    sound_frame(refiner, GOOD_MESH.vertices)
     moved = refine.create("outside", GOOD_MESH.faces, GOOD_MESH.vertices, offset=0.5)
     with pytest.raises(refine.BrokenMeshError, match="to the last bit"):
-        refine.check(moved, moved.refine(GOOD_MESH.vertices), GOOD_MESH.vertices)
+        sound_frame(moved, GOOD_MESH.vertices)
 
 
 @pytest.mark.usefixtures("own_refiners")

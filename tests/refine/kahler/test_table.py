@@ -4,10 +4,16 @@ import itertools
 
 import pytest
 
-from risorius import refine
 from risorius.refine.kahler import table
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, assert_equals_twin, configuration_of, kahler
+from tests.refine.cases import (
+    Forced,
+    as_lists,
+    assert_equals_twin,
+    configuration_of,
+    kahler,
+    sound_frame,
+)
 from tests.refine.plain_twin import refine as refine_plainly
 
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
@@ -34,8 +40,7 @@ def test_one_triangle(splits):
     """The refiner, given a single triangle, makes the pattern drawn by hand."""
     mesh = meshes.triangle()
     refiner = kahler(mesh, criterion=Forced(splits))
-    refined = refiner.refine(mesh.vertices)
-    refine.check(refiner, refined, mesh.vertices)
+    refined = sound_frame(refiner, mesh.vertices)
     assert len(refined.triangles) == table.CONFIGURATION_TABLE.counts[configuration_of(splits)]
     named_splits = dict(zip([(0, 1), (1, 2), (0, 2)], splits, strict=True))
     twin = refine_plainly(*as_lists(mesh.vertices, mesh.faces), named_splits)
