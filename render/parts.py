@@ -64,8 +64,11 @@ class PartBuffers:
             self._breadth = _strand_breadths(part.faces, len(part.vertices))
         self.is_mixed = self.kind in ("STRANDS", "LOCKS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
+        self._rows = np.empty((len(part.vertices), 9 + columns), np.float32)
+        if part.striation is not None:
+            self._rows[:, 9:] = part.striation
         self._uploaded: Floats32 | None = None
-        self._striation = part.striation
+        self._colours: Floats32 | None = None
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._throwing = self._indices, len(part.faces)
         self._hiding = self._indices, 0
@@ -85,10 +88,12 @@ class PartBuffers:
         if vertices is self._uploaded:
             return
         self.corners = box_corners(vertices)
-        more = [] if self._striation is None else [self._striation]
-        normals = placed.normals * self._breadth
-        rows = np.hstack([vertices, normals, to_linear(placed.colours), *more])
-        self._vertices.write(rows.astype(np.float32).tobytes())
+        self._rows[:, :3] = vertices
+        self._rows[:, 3:6] = placed.normals * self._breadth
+        if placed.colours is not self._colours:
+            self._rows[:, 6:9] = to_linear(placed.colours)
+            self._colours = placed.colours
+        self._vertices.write(self._rows)
         self._uploaded = vertices
 
     def draw(self, program: moderngl.Program, *, layers: int = 1) -> None:
