@@ -27,7 +27,7 @@ BEARD = Growth(
     count=2000, root=0.0, tip=1.0, least=0.4, longest=6.0, spread=0.4, half=0.05, fringe=0.0
 )
 FULL_BEARD = Growth(
-    count=5000,
+    count=3600,
     root=0.0,
     tip=1.0,
     least=1.0,
@@ -88,16 +88,25 @@ def beard_of(head: Any, area: Floats32, colours: Floats64, features: Features) -
         shine=0.12,
         striation=striation.astype(np.float32),
     )
-    hairs = locks_on(layers, growth)
+    return _greyed(locks_on(layers, growth), colours[1] / colours[0], features)
+
+
+def _greyed(hairs: Part, bleaching: Floats64, features: Features) -> Part:
+    """Return hairs that stand on the skin, some of them white.
+
+    bleaching: factors on sRGB that make hairs white, (3,).
+    """
     count = len(hairs.vertices) // VERTEX_COUNT
-    is_grey = np.random.default_rng(2).random(count) < features.grey
-    bleached = np.where(is_grey[:, None], colours[1] / colours[0], 1.0)
+    chance = np.random.default_rng(2).random((count, 1))
+    if features.beard_length and features.grey:  # locks of many hairs
+        white = np.clip(features.grey + 0.6 * (chance - 0.5), 0.0, 1.0)
+    else:
+        white = np.where(chance < features.grey, 1.0, 0.0)
+    bleached = np.repeat(1.0 + white * (bleaching - 1.0), VERTEX_COUNT, axis=0)
     firsts = VERTEX_COUNT * np.arange(count, dtype=np.int32)
     return replace(
         hairs,
-        colours=np.clip(hairs.colours * np.repeat(bleached, VERTEX_COUNT, axis=0), 0.0, 1.0).astype(
-            np.float32
-        ),
+        colours=np.clip(hairs.colours * bleached, 0.0, 1.0).astype(np.float32),
         roots=np.repeat(firsts, VERTEX_COUNT),
     )
 

@@ -146,7 +146,7 @@ def _lock_lightness(across: Floats64) -> Floats64:
 
     They do not follow the heights of locks, or dark grooves would look like folds of cloth.
     """
-    difference = 0.2  # from the mean lightness
+    difference = 0.13  # from the mean lightness
     return np.asarray(1.0 + difference * np.roll(_lock_heights(across), 1)[:, None, None])
 
 
