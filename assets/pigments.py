@@ -10,6 +10,7 @@ hemoglobin and melanin information in the skin"; numbers chosen by eye.
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ..geometry.arrays import Floats64
 from ..geometry.colour import to_linear
@@ -18,6 +19,7 @@ from ..geometry.polylines import polyline_at
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
 SHAVED_HAIR = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
+SHIPPED_BEARD = 0.12  # density of a shaved beard in the shipped picture
 
 
 @dataclass(frozen=True)
@@ -60,3 +62,13 @@ def paleness_of_lips(pale: float, density: Floats64) -> Floats64:
     redness = 0.45  # of blood in lips, for each unit of density that they lack
     lacking = pale * np.maximum(density, 0.0)
     return np.asarray(redness * lacking.mean() * BLOOD - most_lacking * lacking)
+
+
+def typology_angle(light: npt.ArrayLike) -> Floats64:
+    """Compute the ITA [deg], (...), of linear sRGB light, 0 to 1, (..., 3), by L* and b*."""
+    # Rows Y and Z of the matrix from linear sRGB (D65) to CIE XYZ.
+    to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
+    root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
+    y, z = np.moveaxis(root, -1, 0)
+    return np.asarray(np.degrees(np.arctan2(116.0 * y - 66.0, 200.0 * (y - z))))

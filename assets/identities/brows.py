@@ -196,14 +196,15 @@ def stubble(size: int) -> Floats32:
 
 
 def front_of_neck(size: int) -> Floats32:
-    """Return where beards grow on the front half of the neck, 0 to 1, (size, size).
+    """Return where beards grow on face and front half of the neck, 0 to 1, (size, size).
 
-    The map of the beard continues around the neck.
+    The map of the beard continues around the neck, whose nape is above the scalp in the texture.
     """
     across = np.abs(np.linspace(-0.5, 0.5, size))
     down = np.linspace(0.0, 1.0, size)[:, None]
     front = (1.0 - smoothstep(across, 0.26, 0.3)) * (1.0 - smoothstep(down, 0.84, 0.93))
-    return np.asarray(front, np.float32)
+    below_scalp = smoothstep(down, 0.35, 0.4)
+    return np.asarray(front * below_scalp, np.float32)
 
 
 @lru_cache(maxsize=2)

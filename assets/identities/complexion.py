@@ -21,7 +21,6 @@ from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from ...geometry.arrays import Floats32, Floats64
@@ -30,10 +29,18 @@ from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FineShape, Head, Part, Wrinkles
 from ..oil import MAP_SIZE
-from ..pigments import BLOOD, SHAVED_HAIR, SHIPPED_COMPLEXION, changes_of, paleness_of_lips
+from ..pigments import (
+    BLOOD,
+    SHAVED_HAIR,
+    SHIPPED_BEARD,
+    SHIPPED_COMPLEXION,
+    changes_of,
+    paleness_of_lips,
+    typology_angle,
+)
 from ..smooth import shrunk
 from .beards import beard_of
-from .brows import painted, shrunk_stubble, soft_beard, trimmed_area
+from .brows import front_of_neck, painted, shrunk_stubble, soft_beard, trimmed_area
 from .eyes import beside_skin, with_irises
 from .features import PLAIN_FEATURES, Features
 from .furrow_map import shared_map, with_lines
@@ -80,16 +87,6 @@ class _Tints:
     def melanin_of(self, angle: float) -> float:
         """Interpolate the amount of melanin for a tone; angle: ITA [deg]."""
         return float(np.interp(angle, self.angles, self.melanins))
-
-
-def typology_angle(light: npt.ArrayLike) -> Floats64:
-    """Compute the ITA [deg], (...), of linear sRGB light, 0 to 1, (..., 3), by L* and b*."""
-    # Rows Y and Z of the matrix from linear sRGB (D65) to CIE XYZ.
-    to_yz = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-    relative = np.asarray(light, dtype=np.float64) @ to_yz.T / to_yz.sum(axis=1)
-    root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
-    y, z = np.moveaxis(root, -1, 0)
-    return np.asarray(np.degrees(np.arctan2(116.0 * y - 66.0, 200.0 * (y - z))))
 
 
 def recoloured(
@@ -333,11 +330,14 @@ def _tints_of_size() -> _Tints:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.array(finer, dtype=np.float32)
-    soft["beard"] = soft_beard(soft["beard"], 1.0 - soft["lips"])
+    whole_beard = soft_beard(soft["beard"], 1.0 - soft["lips"])
+    soft["beard"] = whole_beard * front_of_neck(height)
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
     hair_colour = to_linear(SHIPPED_COMPLEXION.hair).astype(np.float32)
     bare = np.maximum(light - hair[..., None] * hair_colour, 0.0)
+    shaved_neck = SHIPPED_BEARD * (whole_beard - soft["beard"])
+    bare *= np.exp(shaved_neck[..., None] * SHAVED_HAIR.astype(np.float32))
     skin = arrays["skin"]
     least_melanin = 0.05
     most_melanin = 3.4

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..pigments import SHIPPED_BEARD
 from .brows import Brows, drawn_brows
 from .eyes import USUAL_IRIS, Iris, drawn_iris
 from .hair import is_tied
@@ -70,7 +71,6 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     years = identity.age
     beard, fibres, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
     fair_skin = 45.0  # ITA [deg] above which hair may be fair
-    shaved_density = 0.12  # density of the beard in the texture of the built-in head
     brows = drawn_brows(is_man, years, random)
     # Men whose hair recedes have too little to tie it: their hairline remains that of young men.
     receding_years = min(years, NO_RECESSION_AGE) if is_tied(identity.cut) else years
@@ -91,7 +91,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
         stubble=stubble,
         beard_length=length,
-        beard=0.1 + 0.8 * beard**1.3 if is_man else -shaved_density,
+        beard=0.1 + 0.8 * beard**1.3 if is_man else -SHIPPED_BEARD,
         lips=blood,
         pale_lips=pale,
         relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),

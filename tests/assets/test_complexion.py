@@ -29,13 +29,12 @@ from risorius.assets.identities.brows import Brows, stubble
 from risorius.assets.identities.complexion import (
     _distances_behind_hairline,
     _tints_of_size,
-    typology_angle,
 )
 from risorius.assets.identities.eyes import Iris, drawn_iris
 from risorius.assets.identities.hairline import Hairline
 from risorius.assets.identities.population import IRIS_FREQUENCIES
 from risorius.assets.model import Segment
-from risorius.assets.pigments import SHIPPED_COMPLEXION
+from risorius.assets.pigments import SHIPPED_COMPLEXION, typology_angle
 from risorius.assets.smooth import shrunk
 from risorius.geometry.colour import to_linear, to_screen
 from tests.heads import person_of
@@ -62,10 +61,17 @@ def skin_of(head, image):
 
 
 def test_own_tone_is_the_shipped_picture(head):
-    """With the tone of the stored picture, the picture equals the file byte by byte."""
+    """With the tone of the stored picture, the face equals the file byte by byte.
+
+    Nape and sides of the neck have no shadow of a shaved beard.
+    """
     tints = _tints_of_size()
     angle = np.interp(-SHIPPED_COMPLEXION.melanin, -tints.melanins, tints.angles)
-    assert (recoloured(float(angle)) == head.albedo).all()
+    size = len(head.albedo)
+    rows = slice(round(0.35 * size), round(0.83 * size))
+    columns = slice(round(0.25 * size), round(0.75 * size))
+    made = recoloured(float(angle))
+    assert (made[rows, columns] == head.albedo[rows, columns]).all()
 
 
 def test_tones_are_in_order(head):
@@ -412,3 +418,14 @@ def test_stubble_is_finer_than_texels():
     assert hairs.max() < 0.6
     across = np.corrcoef(hairs[:, 1:].ravel(), hairs[:, :-1].ravel())[0, 1]
     assert across < 0.2
+
+
+def test_no_beard_grows_on_the_nape():
+    """The map of the beard, which also colours shaved skin, ends in front of the neck.
+
+    Full beards showed a grey pentagon on the nape, which lies above the scalp in the texture.
+    """
+    beard = _tints_of_size().beard
+    above_scalp = beard[: len(beard) // 3]
+    assert above_scalp.max() == 0.0
+    assert beard.max() > 0.9
