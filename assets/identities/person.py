@@ -29,6 +29,7 @@ from ..fitting.warp import Similarity, ThinPlateSpline
 from ..loading import load
 from ..model import Eye, Head
 from ..norms import measures_of
+from .ears import with_ears
 from .necks import below_jaw, evened_neck
 from .smiles import smiling
 from .sockets import without_ridges
@@ -104,7 +105,8 @@ def _form_of(known: Head, identity: Identity) -> _Form:
     lid_fractions = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far each ring around the eye is moved onto it
     vertices = lids_on_eyes(known, bent, eyes, lid_fractions)
     chin = vertices[known.anatomy["menton"]]
-    vertices = _on_neck(evened_neck(vertices), chin, identity.sex)
+    vertices = with_ears(evened_neck(vertices), identity.ears)
+    vertices = _on_neck(vertices, chin, identity.sex)
     normals = cross_products(vertices, known.faces)
     cosines = (normals * cross_products(known.vertices, known.faces)).sum(axis=1)
     if (cosines <= 0.0).any() or len(self_intersections(vertices, known.faces)):

@@ -37,6 +37,7 @@ from ...geometry.directions import unit_vectors
 from ..data_files import read_arrays
 from ..loading import load
 from ..norms import NORMS, NormSample, measures_of
+from .ears import USUAL_EARS, Ears, drawn_ears
 from .lines import ExpressionLines, drawn_lines
 from .population import EVERYBODY, Population
 from .smiles import USUAL_SMILE, Smile, drawn_smile
@@ -88,6 +89,7 @@ class Identity:
     - sternomastoid: how much farther this muscle stands out than the built-in head's [mm], for a
       face of usual width.
     - lines: expression lines; None: the lines of the built-in head.
+    - ears: how the ears differ from those of the built-in head.
     """
 
     sex: Sex
@@ -106,6 +108,7 @@ class Identity:
     larynx: float = 0.0
     sternomastoid: float = 0.0
     lines: ExpressionLines | None = None
+    ears: Ears = USUAL_EARS
 
     def scaled(self, factor: float) -> Identity:
         """Scale the shape's differences from the mean of people by `factor`; 0 gives the mean."""
@@ -290,6 +293,7 @@ def sample_identity(
         larynx=larynx,
         lines=lines,
         sternomastoid=float(-0.35 + 0.25 * late + 0.4 * leanness),
+        ears=drawn_ears(not is_woman, age, random),
     )
 
 
