@@ -74,7 +74,10 @@ class PartBuffers:
         self._hiding = self._indices, 0
         if self._way is not None and part.striation is not None:
             least = part.striation[:, 5][part.faces].min(axis=1)
-            self._throwing = _index_buffer(gl, part.faces[least > SHADING_DENSITY])
+            # Uneven edges of loose hair would throw a shadow with steps.
+            shading = part.striation[:, 5] + np.maximum(-part.striation[:, 6], 0.0)
+            is_throwing = shading[part.faces].min(axis=1) > SHADING_DENSITY
+            self._throwing = _index_buffer(gl, part.faces[is_throwing])
             # The inner side of hanging hair and flat hair do not hide the surface below.
             outward = unit_vectors(cross_products(part.vertices, part.faces))[:, None]
             rise = (unit_vectors(self._way)[part.faces] * outward).sum(axis=2).min(axis=1)
