@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from risorius import render
-from tests.render.scenes import turned_over
 
-from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN_STYLE, Shape, at, draw, draw_image, lent, sphere, square, turned_over
 
 FLAT_STYLE = replace(PLAIN_STYLE, shading=render.Shading.FLAT)
 GOURAUD_STYLE = replace(PLAIN_STYLE, shading=render.Shading.GOURAUD)

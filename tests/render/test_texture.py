@@ -15,9 +15,8 @@ from risorius.render.texture import (
     _lit_texels,
     _square_roots,
 )
-from tests.render.scenes import turned_over
 
-from .scenes import PLAIN_STYLE, at, draw, draw_image, lent, sphere, square
+from .scenes import PLAIN_STYLE, at, draw, draw_image, lent, sphere, square, turned_over
 
 
 def textured(
