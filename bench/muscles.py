@@ -174,10 +174,11 @@ def measure_head(name: str, head: Any) -> Iterator[MuscleRow]:
         values = {f"{muscle}_{side.value}": 1.0 for side in Side}
         positions = settled_positions(simulation, values, SETTLING_FRAMES)
         distances = np.linalg.norm(space.to_standard(positions) - rest, axis=1)
-        means = [
-            float(np.average(distances[skin], weights=areas[skin]))
-            for skin in (np.flatnonzero(regions == n) for n in range(len(REGION_POINTS)))
-        ]
+        means = []
+        for number in range(len(REGION_POINTS)):
+            is_there = regions == number
+            mean = np.average(distances[is_there], weights=areas[is_there])
+            means.append(float(mean))
         yield MuscleRow(name, muscle, tuple(means))
 
 
@@ -212,7 +213,8 @@ def targets(rows: list[MuscleRow]) -> list[Target]:
     """The muscle of each head that moves a region without a reason most."""
     found = []
     for head in dict.fromkeys(row.head for row in rows):
-        worst = max((row for row in rows if row.head == head), key=lambda row: row.elsewhere()[1])
+        own = [row for row in rows if row.head == head]
+        worst = max(own, key=lambda row: row.elsewhere()[1])
         region, motion = worst.elsewhere()
         name = f"{head}, {worst.muscle} moves {region}"
         found.append(at_most(name, motion, MOST_ELSEWHERE, " mm"))

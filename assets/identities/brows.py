@@ -231,7 +231,8 @@ def soft_beard(beard: Floats32, beside_lips: Floats32) -> Floats32:
     beside_lips: 0 on lips to 1 elsewhere, (H, W). Lips do not count in means, and the beard grows
     by half of what the blur takes from its edges.
     """
-    blur, growth = 10.0, 13  # [texels]
+    blur = 10.0  # [texels]
+    growth = 13  # [texels]
     grown = scipy.ndimage.maximum_filter(beard, growth) * beside_lips
     dense, counted = (scipy.ndimage.gaussian_filter(each, blur) for each in (grown, beside_lips))
     return np.asarray(beside_lips * dense / np.maximum(counted, 0.01), np.float32)

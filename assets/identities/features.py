@@ -109,13 +109,15 @@ def _drawn_beard(chance: float) -> tuple[float, float]:
     chance: random, 0 to 1. Of twenty men eleven are shaved, five have stubble, and four a full
     beard, of 6 to 20 mm at the chin. These shares are assumed.
     """
-    shaved_share, full_share = 0.55, 0.2
+    shaved_share = 0.55
+    full_share = 0.2
     most_stubble = 0.9
     past = chance - shaved_share
     unshaven = 1.0 - shaved_share - full_share  # share of men with stubble
     if past < unshaven:
         return most_stubble * max(past, 0.0) / unshaven, 0.0
-    shortest, longest = 6.0, 20.0  # [mm]
+    shortest = 6.0  # [mm]
+    longest = 20.0  # [mm]
     return most_stubble, shortest + (longest - shortest) * (past - unshaven) / full_share
 
 

@@ -186,15 +186,22 @@ def _curvatures(hair: Part, corners: Integers32, ahead: Floats64) -> Floats64:
     corners: vertices of the faces on which locks grow, (n, 3). ahead: unit directions, (n, 3).
     """
     places, normals = (each[corners].astype(np.float64) for each in (hair.vertices, hair.normals))
-    first, second = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
+    first = places[:, 1] - places[:, 0]
+    second = places[:, 2] - places[:, 0]
     # The solution of ahead = a * first + b * second within the face.
-    square, mixed, other = _dot(first, first), _dot(first, second), _dot(second, second)
-    along_first, along_second = _dot(first, ahead), _dot(second, ahead)
+    square = _dot(first, first)
+    mixed = _dot(first, second)
+    other = _dot(second, second)
+    along_first = _dot(first, ahead)
+    along_second = _dot(second, ahead)
     area = np.maximum(square * other - mixed**2, 1e-6)
     a = (other * along_first - mixed * along_second) / area
     b = (square * along_second - mixed * along_first) / area
-    turned = a * (normals[:, 1] - normals[:, 0]) + b * (normals[:, 2] - normals[:, 0])
-    least_radius, greatest_radius = 25.0, 400.0  # [mm]
+    turn_first = normals[:, 1] - normals[:, 0]
+    turn_second = normals[:, 2] - normals[:, 0]
+    turned = a * turn_first + b * turn_second
+    least_radius = 25.0  # [mm]
+    greatest_radius = 400.0  # [mm]
     return np.clip(_dot(turned, ahead), 1.0 / greatest_radius, 1.0 / least_radius)
 
 

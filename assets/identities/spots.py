@@ -143,8 +143,10 @@ def _add_spot(melanin: Floats32, spot: Spot) -> None:
     radius = np.hypot(spot.radius, 0.6 * texel)
     amount = spot.melanin * (spot.radius / radius) ** 2
     reach = radius * (1.0 + spot.softness) / texel
-    column, row = spot.u * size, (1.0 - spot.v) * size
-    first_row, first_column = int(max(row - reach, 0)), int(max(column - reach, 0))
+    column = spot.u * size
+    row = (1.0 - spot.v) * size
+    first_row = int(max(row - reach, 0))
+    first_column = int(max(column - reach, 0))
     window = melanin[
         first_row : int(row + reach) + 2,
         first_column : int(column + reach) + 2,

@@ -11,7 +11,10 @@ from risorius.assets.coarse import coarse_head
 from risorius.assets.fitting import fit
 from risorius.assets.meshes import Mesh
 
-NOSE, UPPER_LIP, LOWER_LIP, CHIN = 30, 51, 57, 8  # landmarks
+NOSE = 30  # landmarks
+UPPER_LIP = 51
+LOWER_LIP = 57
+CHIN = 8
 ROOTS = (CHIN, UPPER_LIP, NOSE, LOWER_LIP)
 # A strip of two triangles that stands on the skin [mm].
 STRAND = np.array([[0.0, 0.0, 0.2], [0.4, 0.0, 2.0], [0.0, 0.3, 4.0], [0.4, 0.3, 6.0]])

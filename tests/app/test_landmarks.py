@@ -164,7 +164,8 @@ def test_inner_lips_meet_where_the_picture_shows_it(studio, controls, pitch):
     Points at fixed places of the skin were up to 5 mm behind the other lip, and counted as hidden.
     """
     portrait = posed_portrait(studio, controls, pitch)
-    upper, lower = [61, 62, 63], [67, 66, 65]
+    upper = [61, 62, 63]
+    lower = [67, 66, 65]
     above = portrait.found.pixels[lower, 1] - portrait.found.pixels[upper, 1]
     pixel_width = 0.31  # [mm]
     assert (above * portrait.millimetres[upper] > -pixel_width).all()
@@ -181,7 +182,8 @@ def test_shut_lids_have_their_points_on_one_line(studio):
     Those of the lower lid were above those of the upper one, and all of them counted as hidden.
     """
     portrait = posed_portrait(studio, {"AU43": 1.0})
-    upper, lower = [37, 38, 43, 44], [41, 40, 47, 46]
+    upper = [37, 38, 43, 44]
+    lower = [41, 40, 47, 46]
     above = portrait.found.pixels[lower, 1] - portrait.found.pixels[upper, 1]
     assert (np.abs(above) * portrait.millimetres[upper] < 1.0).all()
     assert portrait.found.visible[[*upper, *lower]].all()

@@ -106,7 +106,8 @@ def test_the_middle_of_the_nape_has_as_much_hair_as_its_sides(head):
     """
     scalp = 0.3 * read_arrays(head.file_beside("_tints.npz"))["scalp"]
     size = len(scalp)
-    upper, lower = 74, 73  # vertices of the midline
+    upper = 74  # vertices of the midline
+    lower = 73
     is_nape = np.isin(head.faces, (upper, lower)).sum(axis=1) == 2
     for face in head.faces[is_nape]:
         beside = next(vertex for vertex in face if vertex not in (upper, lower))

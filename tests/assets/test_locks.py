@@ -211,7 +211,8 @@ def test_single_hairs_cross_the_edges_of_bobs(number):
     Edges of bobs were knife-edges: all strands ended within 3 mm, and none left the layers' edge.
     """
     parts = {part.name: part for part in person_called(number).parts}
-    layers, locks = parts["hair"].vertices.reshape(51, -1, 3), parts["hair_locks"]
+    layers = parts["hair"].vertices.reshape(51, -1, 3)
+    locks = parts["hair_locks"]
     assert np.isfinite(locks.vertices).all()
     ribbons = locks.vertices.reshape(LOCK_COUNT, -1, 3)
     lengths = np.linalg.norm(np.diff(ribbons[:, ::2], axis=1), axis=2).sum(axis=1)

@@ -48,7 +48,8 @@ def test_a_spot_darkens_its_own_place_only():
     picture = plain(1280)
     spot = Spot(0.6, 0.4, radius=2.0, stretch=0.8, turn=0.7, melanin=1.0, softness=0.4)
     add_spots(picture, (spot,))
-    row, column = round(0.6 * 1280), round(0.6 * 1280)
+    row = round(0.6 * 1280)
+    column = round(0.6 * 1280)
     red, green, blue = picture[row, column]
     assert blue < green < red < LEVEL
     changed = np.argwhere((picture != LEVEL).any(axis=2))

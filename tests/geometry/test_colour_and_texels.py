@@ -34,7 +34,8 @@ def test_texels_of_a_square():
 
 def test_a_texel_belongs_to_the_triangle_in_which_it_lies_deepest(generator):
     """Overlapping triangles and their margins equal a plain search of all triangles."""
-    size, margin = 24, 1.5
+    size = 24
+    margin = 1.5
     corners = generator.uniform(0.2, 0.8, (12, 3, 2))
     found = Texels.within(corners, (size, size), margin)
     down, right = np.mgrid[:size, :size]
