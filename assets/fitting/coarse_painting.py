@@ -28,7 +28,7 @@ from ..topology import quarter
 from .mesh_validation import SkinPiece
 from .own_lip import nearest_own
 from .painting import TextureLayout, drawn_over, maps_over, spread_uv
-from .warp import ThinPlateSpline
+from .warp import landmark_warp
 
 FIRST_OF_FACE = 17
 """The landmarks before are those of the jaw line, where nothing is painted."""
@@ -60,7 +60,7 @@ def texture_places(
         own = TextureLayout(uv, skin.faces)
         return TexturePlaces(own, 0, own)
     give = np.zeros(len(target)) if are_exact else smoothing_of(skin)
-    warp = ThinPlateSpline(known.vertices[known.landmarks], target, give)
+    warp = landmark_warp(known.vertices[known.landmarks], target, give)
     return _places_of_coarse(known, skin, warp.points(known.vertices), cuts)
 
 

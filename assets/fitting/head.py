@@ -66,7 +66,7 @@ from .organs import place_eyes, place_parts, with_eyelid_rims
 from .own_lip import nearest_own
 from .painting import TextureLayout, drawn_over, maps_in, own_picture, own_skin, spread_uv
 from .topologies import recognised
-from .warp import Similarity, ThinPlateSpline, nearest_on
+from .warp import Similarity, landmark_warp, nearest_on
 
 
 @dataclass(frozen=True)
@@ -294,7 +294,7 @@ def _carried_over(
 ) -> _Carried:
     """Warp the built-in head to a skin [mm] with landmarks `target`, and carry its data over."""
     normals = vertex_normals(skin.vertices, skin.faces)
-    warp = ThinPlateSpline(known.vertices[known.landmarks], target)
+    warp = landmark_warp(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_own(known, warped, skin, normals)
     weight = nearest.interpolate(known.mandible_weight)

@@ -136,3 +136,29 @@ def nearest_on(
     """
     wrong_side_distance = 12.0  # [mm] added to the distance of surfaces with opposite normals
     return closest_points(points, vertices, faces, normals, wrong_side_distance)
+
+
+def landmark_warp(
+    source: Floats64, target: Floats64, give: float | Floats64 = 0.0
+) -> ThinPlateSpline:
+    """Return the deformation from the landmarks of one face to those of another, both (68, 3) [mm].
+
+    Brows keep their height where they lie lower over the eyes: points above and below them stay as
+    far away. Without these, a brow would be pressed together as much as the skin down to the lid.
+
+    give: smoothing at each landmark, see ThinPlateSpline.
+    """
+    brows = np.arange(17, 27)
+    upper_lids = [36, 37, 37, 38, 39, 42, 43, 44, 44, 45]  # landmarks below those of brows
+    up = np.array([0.0, 1.0, 0.0])
+    height = 5.0  # [mm]: a little more than half the height of a brow
+    most_share = 0.6  # of the way from brow to lid
+    over_lid = target[brows, 1] - target[upper_lids, 1]
+    below = np.clip(most_share * over_lid, 0.0, height)[:, None]
+    gives = np.broadcast_to(give, len(source)).copy()
+    gives[brows] *= 3.0  # three points with one error count as one
+    return ThinPlateSpline(
+        np.vstack([source, source[brows] + height * up, source[brows] - height * up]),
+        np.vstack([target, target[brows] + height * up, target[brows] - below * up]),
+        np.concatenate([gives, gives[brows], gives[brows]]),
+    )

@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 from scipy.interpolate import RBFInterpolator
 
-from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
+from risorius.assets.fitting.warp import Similarity, ThinPlateSpline, landmark_warp
 
 
 def test_the_warp_is_the_interpolant_of_scipy(generator):
@@ -45,3 +45,16 @@ def test_warp_meets_its_points_and_keeps_similarities(generator):
     again = Similarity.between(source, moved.points(source))
     assert np.abs(again.points(far) - moved.points(far)).max() < 1e-9
     assert again.is_mirrored == (np.linalg.det(turn) < 0.0)
+
+
+def test_low_brows_keep_their_height(head):
+    """Brows 8 mm lower keep their height, but for the tails; they were 0.7 times as high."""
+    source = head.vertices[head.landmarks]
+    target = source.copy()
+    target[17:27, 1] -= 8.0
+    heights = []
+    for warp in (landmark_warp(source, target), ThinPlateSpline(source, target)):
+        high, low = (warp.points(source[[19, 24]] + [0.0, y, 0.0])[:, 1] for y in (3.0, -3.0))
+        heights.append((high - low) / 6.0)
+    assert (heights[0] > 0.95).all()
+    assert (heights[1] < 0.75).all()
