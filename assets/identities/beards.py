@@ -129,10 +129,11 @@ def _length_shares(head: Any, points: Floats64) -> Floats64:
 
 def pressed_flat(beard: Part, cover: Floats32) -> Part:
     """Return a beard whose hairs lie flat under a mask; cover: points of the mask [mm], (n, 3)."""
-    near, thickness = 12.0, 3.0  # [mm] around the cover; of pressed hairs
+    near, longest = 12.0, 3.0  # [mm]; around the cover; of pressed hairs
     roots = beard.vertices[beard.roots]
     grown = beard.vertices - roots
-    long = np.linalg.norm(grown, axis=1, keepdims=True)
-    is_covered = scipy.spatial.cKDTree(cover).query(roots)[0] < near
-    factor = np.where(is_covered[:, None], thickness / np.maximum(long, thickness), 1.0)
+    long = np.linalg.norm(grown, axis=1)
+    distance = scipy.spatial.cKDTree(cover).query(roots)[0]
+    allowed = np.minimum(0.5 * distance, longest)
+    factor = np.where(distance < near, allowed / np.maximum(long, allowed), 1.0)[:, None]
     return replace(beard, vertices=(roots + factor * grown).astype(np.float32))

@@ -76,6 +76,11 @@ def with_ears(vertices: Floats64, ears: Ears) -> Floats64:
     return shaped
 
 
+def ear_vertices(name: str) -> Integers32:
+    """Return the vertices of the left or right ear, which all persons share, (n,)."""
+    return _ear(name).vertices
+
+
 @lru_cache(maxsize=2)
 def _ear(name: str) -> _Ear:
     """Return the left or right ear; its root on the head stays."""

@@ -16,6 +16,7 @@ import scipy
 from ...geometry.arrays import Floats64
 from ...geometry.steps import smoothstep
 from ..model import MASK_NAME, Part
+from .ears import ear_vertices
 from .person import Person
 from .wires import Colour, Tube, beside_head, joined, sheet, tube
 
@@ -83,7 +84,8 @@ def _ear_loops(person: Person, sheet: Floats64, shares: Floats64, colour: Colour
     loops = []
     for name, column in (("right", 0), ("left", -1)):
         ear = person.vertices[person.anatomy[f"tragion_{name}"]]
-        for row, rise in ((1, 21.0), (-2, -27.0)):  # [mm] above the tragion
+        lobe = person.vertices[ear_vertices(name), 1].min() - 1.5  # height below it [mm]
+        for row, rise in ((1, 21.0), (-2, lobe - ear[1])):  # [mm] above the tragion
             path = _loop(person, sheet[row, column], ear, rise)
             surface = tube(path, 1.8, closed=False)
             along = np.linspace(1.0, 0.0, len(path)) * shares[row, column]

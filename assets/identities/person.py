@@ -31,6 +31,7 @@ from ..model import Eye, Head
 from ..norms import measures_of
 from .ears import with_ears
 from .necks import below_jaw, evened_neck
+from .shirts import NECK_AXIS, off_neck
 from .smiles import smiling
 from .sockets import without_ridges
 from .space import Identity, Sex, person_space, scores_of
@@ -137,6 +138,7 @@ def _make_head(identity: Identity) -> Person:
         if part.bone == "neck":
             moved = _on_neck(part.vertices.astype(float), chin, identity.sex)
             part = replace(part, vertices=moved.astype(np.float32))
+            part = off_neck(part, vertices, known.faces)
         parts.append(part)
     return Person(
         vertices=vertices,
@@ -176,8 +178,7 @@ def _on_neck(points: Floats64, chin: Floats64, sex: Sex) -> Floats64:
     # within 30 mm, necks of women would have a corner behind the jaw.
     fade_height = 60.0
     narrower = narrowing * (sex is Sex.WOMAN) * smoothstep(below, 0.0, fade_height)
-    neck_axis = np.array([0.0, 0.0, -8.0])  # [mm]
-    return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - neck_axis))
+    return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - NECK_AXIS))
 
 
 def _resting_face(

@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from ...geometry.arrays import Floats64
+from ...geometry.arrays import Floats64, Integers32
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
+from ...geometry.rays import crossings
 from ...geometry.steps import smoothstep
 from ..model import Part
 from ..topology import grid_faces
@@ -36,6 +37,7 @@ SHIRT_COLOURS: Mapping[str, Colour] = MappingProxyType(
     }
 )
 SHIRT_COLUMNS = 52  # columns of the built-in shirt; number 0 is in front, the next ones on the left
+NECK_AXIS = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the vertical axis
 BAND_ROW = 4  # row of the built-in shirt at the upper outer edge of the band
 
 
@@ -90,9 +92,8 @@ def _shirt_with_roll(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Clo
     to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / SHIRT_COLUMNS)
     rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
-    axis = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
-    inner = _off_neck(skin, upper, axis)
-    out = unit_vectors((inner - axis) * [1.0, 0.0, 1.0])
+    inner = _off_neck(skin, upper, NECK_AXIS)
+    out = unit_vectors((inner - NECK_AXIS) * [1.0, 0.0, 1.0])
     # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
     profile += [(0.35, 6.2), (0.6, 6.6), (0.82, 6.4), (0.95, 5.4), (1.0, 3.4), (0.97, 0.5)]
@@ -265,6 +266,43 @@ class _Surface:
         row = row + 1
         below = values[row, before] * (1.0 - fraction) + fraction * values[row, after]
         return np.asarray(above + part * (below - above))
+
+
+def off_neck(shirt: Part, vertices: Floats64, faces: Integers32) -> Part:
+    """Widen the band of the built-in shirt where a person's neck is wider than the band.
+
+    vertices, faces: the person's skin [mm], (V, 3) and (F, 3).
+    """
+    clearance = 2.5  # [mm]; space in which the neck moves as the head turns
+    points = shirt.vertices.astype(np.float64)
+    rows = points[: len(points) // SHIRT_COLUMNS * SHIRT_COLUMNS].reshape(-1, SHIRT_COLUMNS, 3)
+    upper = rows[BAND_ROW - 2 : BAND_ROW + 2]
+    apart = (upper - NECK_AXIS) * [1.0, 0.0, 1.0]
+    skins = _reach_of_skin(upper, vertices[faces])
+    missing = np.maximum(skins + clearance - np.linalg.norm(apart, axis=2), 0.0).max(axis=0)
+    widest = scipy.ndimage.maximum_filter1d(missing, 5, mode="wrap")
+    smooth = scipy.ndimage.gaussian_filter1d(widest, 1.0, mode="wrap")
+    depth = rows[BAND_ROW, :, 1] - rows[..., 1]
+    share = smoothstep(depth, 45.0, 15.0)
+    outward = unit_vectors((rows - NECK_AXIS) * [1.0, 0.0, 1.0])
+    moved = rows + (share * smooth)[..., None] * outward
+    widened = np.vstack([moved.reshape(-1, 3), points[rows[..., 0].size :]])
+    return replace(shirt, vertices=widened.astype(np.float32))
+
+
+def _reach_of_skin(points: Floats64, triangles: Floats64) -> Floats64:
+    """Return how far the skin is from the neck's axis [mm] at the heights and angles of points.
+
+    points: (r, c, 3). triangles: of the skin, (F, 3, 3). Returns (r, c); 0 where no skin is.
+    """
+    near = triangles[triangles[..., 1].min(axis=1) < points[..., 1].max()]
+    starts = points * [0.0, 1.0, 0.0] + NECK_AXIS
+    outward = unit_vectors((points - NECK_AXIS) * [1.0, 0.0, 1.0])
+    starts, outward = (each.reshape(-1, 1, 3).repeat(len(near), axis=1) for each in (starts, outward))
+    lines = starts.reshape(-1, 3), outward.reshape(-1, 3)
+    volume, u, v, reach = crossings(*lines, np.tile(near, (points[..., 0].size, 1, 1)))
+    is_met = (volume < 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (reach > 0.0)
+    return np.where(is_met, reach, 0.0).reshape(*points.shape[:2], -1).max(axis=2)
 
 
 def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:

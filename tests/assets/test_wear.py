@@ -13,6 +13,8 @@ from risorius.assets.identities import (
     wearing,
 )
 from risorius.assets.identities.wear import GLASSES_NAME, glasses
+from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import vertex_normals
 from risorius.geometry.rays import crossings
 from tests.assets.checks import part_of
 from tests.heads import person_of
@@ -91,6 +93,23 @@ def shirt_of(person):
     return shirt
 
 
+@pytest.mark.parametrize("number", [12, 34, 4711000092])
+def test_necks_are_inside_the_band(number):
+    """The inner edge of the band is outside of the skin, by 1.5 mm or more.
+
+    The necks of a quarter of all persons came through it in ragged pieces, by 3.8 mm for
+    4711000092.
+    """
+    person = person_of(number)
+    rows = shirt_of(person).vertices[: 5 * 52].reshape(5, 52, 3).astype(float)
+    edge = rows[2:].reshape(-1, 3)
+    nearest = closest_points(edge, person.vertices, person.faces)
+    normals = vertex_normals(person.vertices, person.faces)
+    away = edge - nearest.interpolate(person.vertices)
+    assert ((away * nearest.interpolate(normals)).sum(axis=1) > 0.0).all()
+    assert np.linalg.norm(away, axis=1).min() > 1.5
+
+
 @pytest.mark.parametrize("collar", [name for name in COLLAR_BUILDERS if name != "band"])
 def test_collars_lie_on_the_shirt_and_off_the_neck(people, collar):
     """Collars lie on the unchanged shirt, outside the neck, and their normals face outward."""
@@ -148,5 +167,5 @@ def test_loose_hair_lies_over_a_rolled_collar(turn):
         is_near = (np.abs(beside) < 5.0) & (np.abs(shirt[:, 1] - height) < 4.0)
         if is_near.any():
             checked += 1
-            assert far > cloth_far[is_near].max() - 2.5  # [mm]; it was 10 within
+            assert far > cloth_far[is_near].max() - 3.0  # [mm]; it was 10 within
     assert checked > 100
