@@ -298,11 +298,14 @@ def _reach_of_skin(points: Floats64, triangles: Floats64) -> Floats64:
     near = triangles[triangles[..., 1].min(axis=1) < points[..., 1].max()]
     starts = points * [0.0, 1.0, 0.0] + NECK_AXIS
     outward = unit_vectors((points - NECK_AXIS) * [1.0, 0.0, 1.0])
-    starts, outward = (each.reshape(-1, 1, 3).repeat(len(near), axis=1) for each in (starts, outward))
-    lines = starts.reshape(-1, 3), outward.reshape(-1, 3)
-    volume, u, v, reach = crossings(*lines, np.tile(near, (points[..., 0].size, 1, 1)))
+    # Each line is intersected with each triangle.
+    origins = starts.reshape(-1, 3).repeat(len(near), axis=0)
+    directions = outward.reshape(-1, 3).repeat(len(near), axis=0)
+    corners = np.tile(near, (points[..., 0].size, 1, 1))
+    volume, u, v, reach = crossings(origins, directions, corners)
     is_met = (volume < 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (reach > 0.0)
-    return np.where(is_met, reach, 0.0).reshape(*points.shape[:2], -1).max(axis=2)
+    lengths = np.where(is_met, reach, 0.0).reshape(*points.shape[:2], -1)
+    return np.asarray(lengths.max(axis=2))
 
 
 def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
