@@ -23,7 +23,7 @@ from risorius.assets.identities import (
     Population,
 )
 from risorius.assets.identities.hair import HAIR_CUTS
-from risorius.assets.identities.population import IRIS_FREQUENCIES
+from risorius.assets.identities.population import BEARDS_OF_MEN, IRIS_FREQUENCIES
 from risorius.render import LIGHTS
 from risorius.schema import REST_KEY, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
@@ -197,6 +197,7 @@ class SampleTable(Record):
     irises: Annotated[Weights, _drawn_from(IRIS_FREQUENCIES)]
     cuts_of_women: Annotated[Weights, _drawn_from(HAIR_CUTS)]
     cuts_of_men: Annotated[Weights, _drawn_from(HAIR_CUTS)]
+    beards: Annotated[Weights, _drawn_from(BEARDS_OF_MEN)]
     shirts: Annotated[Weights, _drawn_from(SHIRT_COLOURS)]
     collars: Annotated[Weights, _drawn_from(COLLAR_BUILDERS)]
     glasses: Annotated[Weights, _drawn_from((NOTHING_WORN, *GLASSES_FRAMES))]
@@ -215,6 +216,7 @@ class SampleTable(Record):
             irises=self.irises,
             cuts_of_women=self.cuts_of_women,
             cuts_of_men=self.cuts_of_men,
+            beards=self.beards,
         )
 
     def can_be_combined(self, unit: str, others: Container[str]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from .brows import Brows, drawn_brows
 from .eyes import USUAL_IRIS, Iris, drawn_iris
 from .hair import is_tied
 from .hairline import NO_RECESSION_AGE, Hairline, drawn_hairline
-from .population import ONLY_BROWN
+from .population import BEARDS_OF_MEN, ONLY_BROWN
 from .space import Identity, Sex
 from .spots import Spot, drawn_spots
 
@@ -57,8 +58,15 @@ class Features:
 PLAIN_FEATURES = Features()
 
 
-def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
+def features_of(
+    identity: Identity,
+    angle: float,
+    random: np.random.Generator,
+    beards: Mapping[str, float] = BEARDS_OF_MEN,
+) -> Features:
     """Choose random features for an identity's sex and age, and a skin tone, ITA [deg].
+
+    beards: frequencies of men's beards, as in `Population`.
 
     In women, eyes and lips contrast more with the skin than in men (Russell 2009, "A sex difference
     in facial contrast and its exaggeration by cosmetics", Perception 38:1211-1219). The contrast
@@ -85,7 +93,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         fading = 1.0 - 0.006 * (years - 20.0)
         blood = fading * (0.48 + 0.2 * blood_chance)
     pale = 0.12 + 0.15 * pale_chance
-    stubble, length = _drawn_beard(hairs) if is_man else (0.0, 0.0)
+    stubble, length = _drawn_beard(hairs, beards) if is_man else (0.0, 0.0)
     return Features(
         brows=brows,
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
@@ -103,22 +111,23 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     )
 
 
-def _drawn_beard(chance: float) -> tuple[float, float]:
+def _drawn_beard(chance: float, frequencies: Mapping[str, float]) -> tuple[float, float]:
     """Return the density of stubble, 0 to 0.9, and the length of a full beard [mm], 0 for none.
 
-    chance: random, 0 to 1. Of twenty men eleven are shaved, five have stubble, and four a full
-    beard, of 6 to 20 mm at the chin. These shares are assumed.
+    A full beard has 6 to 20 mm at the chin. chance: random, 0 to 1. frequencies: as in Population.
     """
-    shaved_share = 0.55
-    full_share = 0.2
+    kinds = list(BEARDS_OF_MEN)
+    weights = np.array([frequencies.get(kind, 0.0) for kind in kinds])
+    ends = np.cumsum(weights / weights.sum())
+    number = min(int(np.searchsorted(ends, chance, side="right")), len(kinds) - 1)
+    start = ends[number - 1] if number else 0.0
+    past = float((chance - start) / (ends[number] - start))  # 0 to 1 within the kind
     most_stubble = 0.9
-    past = chance - shaved_share
-    unshaven = 1.0 - shaved_share - full_share  # share of men with stubble
-    if past < unshaven:
-        return most_stubble * max(past, 0.0) / unshaven, 0.0
     shortest = 6.0  # [mm]
     longest = 20.0  # [mm]
-    return most_stubble, shortest + (longest - shortest) * (past - unshaven) / full_share
+    if kinds[number] == "full":
+        return most_stubble, shortest + (longest - shortest) * past
+    return (most_stubble * past if kinds[number] == "stubble" else 0.0), 0.0
 
 
 def _fraction_of_grey(years: float, angle: float, early: float) -> float:

@@ -62,7 +62,8 @@ def colours_of_number(
     angle = drawn_angle if angle is None else angle
     blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
     drawn = drawn_irises(random, angle, population.irises)
-    return Colours(angle, blood, irises or drawn, features_of(identity, angle, random))
+    features = features_of(identity, angle, random, population.beards)
+    return Colours(angle, blood, irises or drawn, features)
 
 
 def with_colours_of_number(

@@ -47,6 +47,7 @@ CUTS_OF_MEN = MappingProxyType(
         "tailed": 0.03,
     }
 )
+BEARDS_OF_MEN = MappingProxyType({"none": 0.55, "stubble": 0.25, "full": 0.2})  # assumed
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class Population:
     - tones: darkest and lightest skin tone, ITA [deg].
     - irises: frequencies of eye colours among people with very light skin.
     - cuts_of_women, cuts_of_men: frequencies of hair cuts.
+    - beards: frequencies of shaved men, of stubble and of full beards (BEARDS_OF_MEN).
     """
 
     women: float = 0.5
@@ -66,6 +68,7 @@ class Population:
     irises: Mapping[str, float] = field(default_factory=lambda: IRIS_FREQUENCIES)
     cuts_of_women: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_WOMEN)
     cuts_of_men: Mapping[str, float] = field(default_factory=lambda: CUTS_OF_MEN)
+    beards: Mapping[str, float] = field(default_factory=lambda: BEARDS_OF_MEN)
 
 
 EVERYBODY = Population()

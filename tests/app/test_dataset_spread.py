@@ -247,10 +247,12 @@ def test_seeds_have_different_persons():
         ("[persons]\ntone = [-40, -30]", lambda _, own: -40 <= own.angle <= -30),
         ("[cuts_of_women]\ntailed = 1\n[cuts_of_men]\ncropped = 1", lambda who, _: who.cut
          == ("tailed" if who.sex.value == "woman" else "cropped")),
+        ("[persons]\nwomen = 0\n[beards]\nfull = 1", lambda _, own:
+         6.0 <= own.features.beard_length <= 20.0),
     ],
 )  # fmt: skip
 def test_the_table_chooses_persons(tmp_path, text, is_so):
-    """A table chooses persons by sex, age, tone and haircut."""
+    """A table chooses persons by sex, age, tone, haircut and beard."""
     file = tmp_path / "my.toml"
     file.write_text(text, "utf-8")
     population = load_table(file).population
