@@ -11,7 +11,6 @@ import numpy as np
 
 from risorius.assets.annotation import EDGE_LANDMARKS, NEAR_STEPS
 from risorius.geometry.arrays import Flags, Floats64
-from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Face
 from .camera import CameraLabels
@@ -19,15 +18,18 @@ from .camera import CameraLabels
 FACING = ((61, 67), (62, 66), (63, 65), (37, 41), (38, 40), (43, 47), (44, 46))  # upper and lower
 
 
-def edge_points(face: Face, camera: CameraLabels) -> Floats64:
+def edge_points(
+    face: Face, camera: CameraLabels, positions: Floats64, normals: Floats64
+) -> Floats64:
     """Return the landmarks EDGE_LANDMARKS in a picture [mm], shape (14, 3).
+
+    positions, normals: of the skin's vertices, (V, 3) each.
 
     Each is the first place on a path from the edge of the lip or lid outward that neither this
     edge nor the facing one covers. If a lip is rolled in and wholly covered, its edge is the edge
     of the other lip.
     """
-    normals = vertex_normals(face.positions, face.head.faces)
-    paths = face.annotation.edge_paths(face.positions, normals)
+    paths = face.annotation.edge_paths(positions, normals)
     head_up = face.bone_transforms()["cranium"][:3, 1]
     up_in_picture = (camera.rotation @ head_up)[:2]
     points = np.empty((len(paths), 3))

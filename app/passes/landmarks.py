@@ -50,9 +50,11 @@ def landmarks_in(
     covered: flags of pixels where a mask hides the face, (H, W); None: no mask.
     """
     positions = face.positions
-    jaw = outline(face, camera)
+    normals = vertex_normals(positions, face.head.faces)
+    jaw = outline(face, camera, positions, normals)
     inner = face.annotation.inner_points(positions)
-    inner[np.array(EDGE_LANDMARKS) - FIRST_INNER] = edge_points(face, camera)
+    edges = edge_points(face, camera, positions, normals)
+    inner[np.array(EDGE_LANDMARKS) - FIRST_INNER] = edges
     points = np.vstack([jaw, inner, _pupils(face)])
     pixels = camera.project(points)
     pupil_tolerance = 0.6  # [mm]; a shut lid lies one millimetre in front of the pupil
@@ -64,7 +66,8 @@ def landmarks_in(
             _is_on_surface(points[JAW_COUNT:], tolerance, camera, depth),
         ]
     )
-    visible[-len(EYE_SIDES) :] &= _is_uncovered_by_skin(face, points[-len(EYE_SIDES) :], camera)
+    skin = positions[face.head.faces]
+    visible[-len(EYE_SIDES) :] &= _is_uncovered_by_skin(skin, points[-len(EYE_SIDES) :], camera)
     return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
 
 
@@ -79,8 +82,10 @@ def jaw_on_bone(
     return Landmarks(points, pixels, visible & ~_is_covered(pixels, covered))
 
 
-def outline(face: Face, camera: CameraLabels) -> Floats64:
+def outline(face: Face, camera: CameraLabels, positions: Floats64, normals: Floats64) -> Floats64:
     """Return the outline of a face as a camera sees it [mm], shape (17, 3), from right to left.
+
+    positions, normals: of the skin's vertices, (V, 3) each.
 
     The outline takes the outermost point of each line over the skin. Outward means to the side at
     the eyes and down at the chin; further iterations use the normals of the previous outline. As
@@ -88,8 +93,6 @@ def outline(face: Face, camera: CameraLabels) -> Floats64:
     of the other's. Heights are measured on the head: if a face looks down, the outline begins above
     the eyes in the picture.
     """
-    positions = face.positions
-    normals = vertex_normals(positions, face.head.faces)
     paths = face.annotation.outline_paths(positions, normals)
     corner_numbers = [36 - JAW_COUNT, 45 - JAW_COUNT]
     head_axes = face.bone_transforms()["cranium"][:3, :2]
@@ -158,13 +161,12 @@ def _pupils(face: Face) -> Floats64:
     return np.array(pupils)
 
 
-def _is_uncovered_by_skin(face: Face, points: Floats64, camera: CameraLabels) -> Flags:
+def _is_uncovered_by_skin(skin: Floats64, points: Floats64, camera: CameraLabels) -> Flags:
     """Return which points (n, 3) see the camera past the outer side of the skin, (n,).
 
     Depths cannot show whether a pupil is behind a lid: in small pictures, a pixel is wider than a
-    lid is thick.
+    lid is thick. skin: its triangles, (F, 3, 3).
     """
-    skin = face.positions[face.head.faces]
     eye = -camera.rotation.T @ camera.translation
     is_free = []
     for point in points:

@@ -14,8 +14,8 @@ import scipy
 from ...geometry.arrays import Floats32, Floats64
 from ..model import Part
 from .hair import HAIR_NAME
+from .shirts import NECK_AXIS
 
-AXIS = np.array([0.0, 0.0, -8.0])  # [mm]; a point of the neck's axis
 COLUMN_COUNT = 72  # columns of a map; each covers 5 degrees
 ROW_HEIGHT = 4.0  # [mm] of a map's row
 
@@ -32,7 +32,7 @@ def over_collar(hair: Sequence[Part], shirt: Part) -> list[Part]:
     turning, near = 6, 2  # columns by which heads turn, and rows within which cloth counts
     size = 2 * turning + 1, 2 * near + 1
     farthest = scipy.ndimage.maximum_filter(cloth, size, mode=("wrap", "nearest"))
-    clearance, most = 6.0, 16.0  # [mm] between cloth and hair; greatest push: shoulders are wide
+    clearance, most = 6.5, 18.0  # [mm] between cloth and hair; greatest push: shoulders are wide
     own = _map_of(layers, bottom, rising_height)
     lacking = np.where(own > 0.0, farthest + clearance - own, 0.0)
     push = np.clip(lacking * (farthest > 0.0), 0.0, most)
@@ -61,7 +61,7 @@ def _map_of(part: Part, bottom: float, height: float) -> Floats64:
 
 def _places(points: Floats32, bottom: float) -> tuple[Floats64, Floats64]:
     """Return columns and rows of points in a map, (2, n), and distances from the axis, (n,)."""
-    x, y, z = (points - AXIS).T
+    x, y, z = (points - NECK_AXIS).T
     column = (np.arctan2(x, z) / (2.0 * np.pi) + 0.5) * COLUMN_COUNT
     return np.stack([column, (y - bottom) / ROW_HEIGHT]), np.hypot(x, z)
 
@@ -72,7 +72,7 @@ def _pushed(part: Part, push: Floats64, bottom: float) -> Part:
     is_low = row < push.shape[1]
     at = np.stack([column[is_low] - 0.5, np.maximum(row[is_low] - 0.5, 0.0)])
     moved = scipy.ndimage.map_coordinates(push, at, order=1, mode="grid-wrap")
-    out = (part.vertices[is_low] - AXIS) * [1.0, 0.0, 1.0] / far[is_low, None]
+    out = (part.vertices[is_low] - NECK_AXIS) * [1.0, 0.0, 1.0] / far[is_low, None]
     vertices = part.vertices.copy()
     vertices[is_low] += (moved[:, None] * out).astype(np.float32)
     return replace(part, vertices=vertices)

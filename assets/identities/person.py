@@ -31,7 +31,7 @@ from ..model import Eye, Head
 from ..norms import measures_of
 from .ears import with_ears
 from .necks import below_jaw, evened_neck
-from .shirts import NECK_AXIS, off_neck
+from .shirts import NECK_AXIS, with_wide_band
 from .smiles import smiling
 from .sockets import without_ridges
 from .space import Identity, Sex, person_space, scores_of
@@ -138,7 +138,7 @@ def _make_head(identity: Identity) -> Person:
         if part.bone == "neck":
             moved = _on_neck(part.vertices.astype(float), chin, identity.sex)
             part = replace(part, vertices=moved.astype(np.float32))
-            part = off_neck(part, vertices, known.faces)
+            part = with_wide_band(part, vertices[known.faces])
         parts.append(part)
     return Person(
         vertices=vertices,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from ...geometry.arrays import Floats64, Integers32
+from ...geometry.arrays import Floats64
 from ...geometry.directions import unit_vectors
 from ...geometry.normals import vertex_normals
 from ...geometry.rays import crossings
@@ -51,7 +51,8 @@ class _Cloth(NamedTuple):
 def in_shirt(shirt: Part, skin: Floats64, colour: str, collar: str) -> Part:
     """Give the built-in shirt a colour of SHIRT_COLOURS and a collar of COLLAR_BUILDERS.
 
-    skin: vertices of the person's head [mm], (V, 3). Raises KeyError for other colours and collars.
+    skin: triangles of the person's head [mm], (F, 3, 3). Raises KeyError for other colours and
+    collars.
     """
     pieces = COLLAR_BUILDERS[collar](shirt, skin, np.array(SHIRT_COLOURS[colour]))
     surface = joined([each.surface for each in pieces])
@@ -92,7 +93,7 @@ def _shirt_with_roll(shirt: Part, skin: Floats64, colour: Floats64) -> list[_Clo
     to_back = 0.5 - 0.5 * np.cos(2.0 * np.pi * columns / SHIRT_COLUMNS)
     rise = (15.0 + 7.0 * to_back)[:, None]  # [mm] above the band
     upper = band + rise * [0.0, 1.0, 0.0] + (5.0 - 1.0 * to_back)[:, None] * [0.0, 0.0, 1.0]
-    inner = _off_neck(skin, upper, NECK_AXIS)
+    inner = _off_skin(upper, skin)
     out = unit_vectors((inner - NECK_AXIS) * [1.0, 0.0, 1.0])
     # Pairs: fraction of the distance from the upper edge down to the root, outward offset [mm].
     profile = [(0.9, -3.0), (0.35, 0.0), (0.06, 0.2), (0.0, 1.6), (0.03, 3.6), (0.14, 5.2)]
@@ -268,17 +269,17 @@ class _Surface:
         return np.asarray(above + part * (below - above))
 
 
-def off_neck(shirt: Part, vertices: Floats64, faces: Integers32) -> Part:
+def with_wide_band(shirt: Part, skin: Floats64) -> Part:
     """Widen the band of the built-in shirt where a person's neck is wider than the band.
 
-    vertices, faces: the person's skin [mm], (V, 3) and (F, 3).
+    skin: triangles of the person's head [mm], (F, 3, 3).
     """
     clearance = 2.5  # [mm]; space in which the neck moves as the head turns
     points = shirt.vertices.astype(np.float64)
     rows = points[: len(points) // SHIRT_COLUMNS * SHIRT_COLUMNS].reshape(-1, SHIRT_COLUMNS, 3)
     upper = rows[BAND_ROW - 2 : BAND_ROW + 2]
     apart = (upper - NECK_AXIS) * [1.0, 0.0, 1.0]
-    skins = _reach_of_skin(upper, vertices[faces])
+    skins = _reach_of_skin(upper, skin)
     missing = np.maximum(skins + clearance - np.linalg.norm(apart, axis=2), 0.0).max(axis=0)
     widest = scipy.ndimage.maximum_filter1d(missing, 5, mode="wrap")
     smooth = scipy.ndimage.gaussian_filter1d(widest, 1.0, mode="wrap")
@@ -308,26 +309,14 @@ def _reach_of_skin(points: Floats64, triangles: Floats64) -> Floats64:
     return np.asarray(lengths.max(axis=2))
 
 
-def _off_neck(skin: Floats64, points: Floats64, axis: Floats64) -> Floats64:
-    """Move points around the neck, (n, 3), outward off the skin (V, 3); axis: a point, (3,)."""
-    clearance = 3.0 + 1.5 * (points[:, 2] < axis[2])  # [mm]; more at the back, where heads bend
-    apart = skin - axis
-    radius = 60.0  # [mm]; converts angles into lengths
-    around = radius * np.arctan2(apart[:, 0], apart[:, 2])
-    places = np.column_stack([around, skin[:, 1]])
-    neck = skin[:, 1] < points[:, 1].max() + 8.0
-    out = points - axis
-    turn = radius * np.arctan2(out[:, 0], out[:, 2])
-    reach = np.hypot(out[:, 0], out[:, 2])
-    tree = scipy.spatial.cKDTree(places[neck])
-    distances, near = tree.query(np.column_stack([turn, points[:, 1]]), k=4)
-    weights = 1.0 / (distances + 1.0)
-    radii = np.hypot(apart[neck, 0], apart[neck, 2])
-    skins = (weights * radii[near]).sum(1) / weights.sum(1)
-    wanted = np.maximum(reach, skins + clearance)
+def _off_skin(points: Floats64, triangles: Floats64) -> Floats64:
+    """Move points around the neck, (n, 3), outward off the skin's triangles (F, 3, 3)."""
+    clearance = 3.0 + 1.5 * (points[:, 2] < NECK_AXIS[2])  # [mm]; more at the back: heads bend
+    apart = (points - NECK_AXIS) * [1.0, 0.0, 1.0]
+    reach = np.linalg.norm(apart, axis=1)
+    wanted = np.maximum(reach, _reach_of_skin(points[None], triangles)[0] + clearance)
     wanted = scipy.ndimage.gaussian_filter1d(wanted, 2.0, mode="wrap")
-    scale = (wanted / reach)[:, None]
-    return np.asarray(axis + out * np.hstack([scale, np.ones_like(scale), scale]))
+    return np.asarray(points + (wanted - reach)[:, None] * unit_vectors(apart))
 
 
 def _surface_of(points: Floats64, *, closed: bool = False) -> Tube:

@@ -71,8 +71,9 @@ def wearing(
     frame: glasses of GLASSES_FRAMES, or None. cover: a mask of MASK_COLOURS, or None. Other names
     raise KeyError.
     """
+    skin = person.vertices[person.faces]
     parts = [
-        in_shirt(part, person.vertices, shirt, collar) if part.bone == "neck" else part
+        in_shirt(part, skin, shirt, collar) if part.bone == "neck" else part
         for part in person.parts
     ]
     if isinstance(HAIR_CUTS[person.identity.cut], Fall):

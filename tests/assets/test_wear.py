@@ -167,5 +167,5 @@ def test_loose_hair_lies_over_a_rolled_collar(turn):
         is_near = (np.abs(beside) < 5.0) & (np.abs(shirt[:, 1] - height) < 4.0)
         if is_near.any():
             checked += 1
-            assert far > cloth_far[is_near].max() - 3.0  # [mm]; it was 10 within
+            assert far > cloth_far[is_near].max() - 2.5  # [mm]; it was 10 within
     assert checked > 100
